@@ -1,0 +1,102 @@
+// Study: the whole question, in SI. Read from TOML by study_file; constant afterwards.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/gradation.h"
+#include "dem/scene.h"
+#include "dem/spread.h"
+#include "targets/misfit.h"
+#include "targets/target.h"
+
+namespace gradwright {
+
+/// One input as the user sees it: printed by `check` and every report.
+struct InputEntry {
+    std::string key;    ///< "process.layer_thickness"
+    std::string value;  ///< as text with unit: "40 um"
+    std::string unit;
+    std::string origin;  ///< "given" | "default" | "machine file" | "assumed"
+    std::string note;    ///< source or reason of a default
+};
+
+/// A number that is fixed or free between bounds.
+struct Variable {
+    std::string name;
+    double value = 0;  ///< fixed value, or start (mid-range when not given) [SI]
+    bool free = false;
+    double low = 0, high = 0;
+};
+
+enum class Family { straight, polyline };
+
+struct DesignSpace {
+    Family family = Family::polyline;
+    int knots = 5;          ///< polyline: >= 2
+    bool monotone = true;   ///< polyline: y never turns back along x
+    double minimum_segment = 0.1e-3;  ///< [m]
+    Variable angle_deg{"partition.angle", 5, true, -90, 90};  ///< straight [deg]
+    Variable offset{"partition.offset", 0, true, 0, 0};       ///< straight, y offset of the pivot [m]; bounds (0,0) = from the width
+    std::vector<PlanPoint> given_points;  ///< polyline fixed or started by the user; empty = closed-form start
+    bool partition_free = true;
+    std::array<Variable, 2> fill_fraction = {Variable{"fill_fraction.A", 1}, Variable{"fill_fraction.B", 1}};
+    // motion variables: each new value needs a new spread
+    Variable dosage_factor{"dosage_factor", 2};
+    Variable land{"land", 3.2e-3};
+    Variable footprint_offset{"footprint_offset", 0};  ///< shift of the footprint in x [m]
+};
+
+struct Objective {
+    Norm norm = Norm::rmse;
+    double tolerance = 0.04;
+    double x_drift_tolerance = 0.10;
+    double x_drift_weight = 0.5;
+    double waste_weight = 0.02;
+    double min_coverage = 0.95;
+};
+
+struct Study {
+    std::string name;          ///< file stem, or [study] name
+    std::string file;          ///< path as given
+    std::string text;          ///< verbatim TOML
+    std::string machine_name;
+    // machine and process, kept apart from the Scene because dosage, land and strip width change per evaluation
+    Scene scene;               ///< full-width scene at the fixed / start values of the motion variables
+    double dispenser_width = 1.6e-3;  ///< W [m]
+    double steady_packing = 0.28;     ///< used when gap = steady
+    bool gap_steady = true;           ///< gap = layer_thickness / steady_packing
+    bool allow_starved = false;       ///< supply ratio < 1.05 allowed
+    double strip_width = 0.4e-3;      ///< periodic strip of the map [m]
+    std::vector<std::string> reductions;  ///< named: "fines_cut", "shallow_bed", "strip_map"
+    Target target;
+    Footprint footprint;  ///< default: the whole platform
+    BinGrid bins;         ///< default 0.2 mm over the width
+    DesignSpace design_space;
+    Objective objective;
+    std::uint64_t seed = 1;
+    int map_spreads = 1;       ///< strips pooled in the map
+    int max_spreads = 4;       ///< budget: map + full
+    std::vector<InputEntry> inputs;     ///< every value, given or default
+    std::vector<std::string> warnings;  ///< found while reading
+};
+
+/// What is to be built: one point of the design space.
+struct Design {
+    Family family = Family::polyline;
+    PartitionCurve partition;
+    std::array<double, 2> fill_fraction = {1, 1};
+    double dosage_factor = 2;
+    double land = 0;              ///< [m]
+    double footprint_offset = 0;  ///< [m]
+    std::vector<std::pair<std::string, double>> parameters;  ///< named numbers of the family (deg, m)
+};
+
+/// The scene of a design: dose height = dosage_factor x layer x (A_platform/A_dispenser), land, headspaces; `strip`: the map's narrow
+/// periodic strip. Seed is the packing seed.
+Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64_t seed);
+/// h phi_bed A_dispenser / (g phi_layer A_platform) [-]
+double supply_ratio(const Scene& scene, double bed_packing, double layer_packing);
+
+}  // namespace gradwright

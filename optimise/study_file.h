@@ -1,0 +1,42 @@
+// Study file (TOML) -> Study. All problems of a file at once, each with file, line, key, value, rule and how to mend.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "optimise/study.h"
+
+namespace gradwright {
+
+struct InputProblem {
+    std::string file;
+    int line = 0;  ///< 1-based, 0 = not tied to a line
+    std::string key, value, rule, mend;
+    std::string text() const;  ///< "file:line: key = value: rule; mend"
+};
+
+/// Thrown when a file cannot be used; carries every problem found.
+struct InputError {
+    std::vector<InputProblem> problems;
+};
+
+/// `overrides`: "key.path=toml value", applied before validation (from --set).
+Study read_study(const std::string& file, const std::vector<std::string>& overrides = {});
+Study parse_study(const std::string& text, const std::string& file_name, const std::vector<std::string>& overrides = {});
+
+/// "40 um", "0.02 J/m2", "5 deg", "100 mm/s" -> SI number. `dimension`: "length", "speed", "angle", "work_of_adhesion", "pressure",
+/// "density", "acceleration". Throws std::invalid_argument with the rule.
+double parse_quantity(const std::string& text, const std::string& dimension);
+
+/// Nearest of `valid` to `word` by edit distance; empty when nothing is near.
+std::string nearest_name(const std::string& word, const std::vector<std::string>& valid);
+
+struct MachineInfo {
+    std::string name, title, source;
+    std::string file;
+};
+std::vector<MachineInfo> shipped_machines();  ///< from examples/machines/*.toml
+std::vector<Material> shipped_materials();    ///< from examples/materials.toml; each with its source
+/// Folder of the shipped data: GRADWRIGHT_DATA, else the source tree's examples, else the installed share folder.
+std::string data_folder();
+
+}  // namespace gradwright

@@ -1,0 +1,43 @@
+// The wish: gradation index GI(y) asked for, over plain numbers. Knows no grains.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gradwright {
+
+enum class TargetShape { linear, sigmoid, step, table };
+
+struct TargetZone {
+    double y_low = 0, y_high = 0;  ///< [m], half-open [low, high)
+    double weight = 1;             ///< >= 0; 0 = don't care
+};
+
+/// g(y) in [0, 1]. Build with the functions below.
+struct Target {
+    TargetShape shape = TargetShape::linear;
+    // linear: clamped ramp through (y0, gi0), (y1, gi1); step: gi0 below y0, gi1 from y0 on
+    double y0 = 0, gi0 = 0, y1 = 0, gi1 = 1;
+    // sigmoid: gi0 + (gi1-gi0)/(1+exp(-(y-centre)/s)), s = width_10_90 / (2 ln 9)
+    double centre = 0, width_10_90 = 0;
+    // table: piecewise linear, constant beyond its ends
+    std::vector<double> table_y, table_gi;
+    std::string table_file;          ///< as given, for the report
+    std::vector<TargetZone> zones;   ///< later zones win; outside all zones weight 1
+
+    double operator()(double y) const;
+    /// Mean of g over [low, high): what a bin of that width can show [-].
+    double bin_mean(double y_low, double y_high) const;
+    double weight(double y) const;
+    std::string describe() const;  ///< one line for people, lengths in mm
+};
+
+Target linear_target(double y0, double gi0, double y1, double gi1);
+Target sigmoid_target(double centre, double width_10_90, double gi_low = 0, double gi_high = 1);
+Target step_target(double y, double gi_low = 0, double gi_high = 1);
+/// CSV with two columns y [m, or with unit named in the header as y_mm / y_um / y_m] and gi. Throws std::runtime_error
+/// naming file, line and rule.
+Target table_target(const std::string& csv_file);
+std::vector<std::string> problems(const Target& target);  ///< all at once; empty when sound
+
+}  // namespace gradwright
