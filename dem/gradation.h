@@ -30,6 +30,7 @@ struct GradationProfile {
     std::vector<double> standard_error;  ///< s_b [-]
     std::vector<double> volume;          ///< solid in the bin [m3]
     std::vector<double> n_eff;           ///< (sum V)^2 / sum V^2
+    double degrees = 0;  ///< degrees of freedom behind the standard errors; 0 = not known. For bands and misfits: Student's t
 };
 
 struct XDrift {
@@ -37,6 +38,7 @@ struct XDrift {
     std::vector<double> standard_error;
     double value = 0;                    ///< rms over counting bins [-]
     double noise_floor = 0;              ///< rms of the standard errors
+    double degrees = 0;                  ///< degrees of freedom behind them; 0 = not known
 };
 
 struct GradationMap {
@@ -45,15 +47,18 @@ struct GradationMap {
     std::vector<double> mass_kg;   ///< [y][x]
 };
 
-/// Labels of every laid grain for a partition: 1 on A's side at its origin. For labelled layers use layer.is_a.
+/// Labels of every laid grain for a partition: 1 on A's side at its origin (wrapped into [0, W) when periodic). For labelled layers
+/// use layer.is_a, that is carried_labels.
 std::vector<double> hard_labels(const Layer& layer, const PartitionCurve& partition);
+/// The labels that a labelled run carried, as numbers: 1 for A.
+std::vector<double> carried_labels(const Layer& layer);
 
 /// Plain bins: label (0..1) per grain. Standard error: block bootstrap over x blocks of `block` [m] (all y), with floor variance
 /// gi-independent 1/(n_eff+2) x p(1-p) with p = 1/(n_eff+2) on plateaus. Grain's full volume at its centre; y wrapped when periodic.
 GradationProfile plain_profile(const Layer& layer, std::span<const double> label, const Footprint& footprint, const BinGrid& bins,
                                std::uint64_t seed, double block = 0.3e-3, int resamples = 200);
 XDrift plain_drift(const Layer& layer, std::span<const double> label, const Footprint& footprint, const BinGrid& bins,
-                   std::uint64_t seed, double block = 0.1e-3, int resamples = 200);
+                   std::uint64_t seed, double block = 0.3e-3, int resamples = 200);
 GradationMap gradation_map(const Layer& layer, std::span<const double> label, const std::vector<double>& density_kg_m3_a_b,
                            double cell = 0.2e-3, double width = 0);
 
@@ -82,5 +87,7 @@ double origin_x_quantile(std::span<const Layer> layers, double x_low, double x_h
 
 /// Mean profile of replicates (same bins). standard_error: from the replicates when >= 3, else propagated from theirs.
 GradationProfile mean_profile(std::span<const GradationProfile> replicates);
+/// The same for the x drift.
+XDrift mean_drift(std::span<const XDrift> replicates);
 
 }  // namespace gradwright

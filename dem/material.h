@@ -25,7 +25,7 @@ struct Interaction {
     double work_of_adhesion = 0.02;          ///< Gamma, unsoftened [J/m2], >= 0; 0 = plain Hertz
     FrictionCap friction_cap = FrictionCap::thornton;
     RollingModel rolling_model = RollingModel::constant_torque;
-    double rolling_regularisation_speed = 1e-3;  ///< [m/s]: constant_torque is linear below it, > 0
+    double rolling_regularisation_speed = 1e-4;  ///< [m/s]: constant_torque is linear (creeps) below it; 1e-3 keeps beds from settling
 };
 
 }  // namespace gradwright

@@ -41,6 +41,7 @@ struct SpreadResult {
     std::vector<Snapshot> snapshots;  ///< first = levelled and raised bed, last = the end
     long grains = 0;                  ///< mobile grains in the spread
     long fixed_grains = 0;
+    long pinched_grains = 0;  ///< pressed into the yielding blade by more than 5 % of their radius, mostly at the dispenser's rim
     long steps = 0;
     double grain_steps = 0;  ///< awake grain-steps: forces evaluated
     double all_grain_steps = 0;  ///< steps x mobile grains, sleeping ones included

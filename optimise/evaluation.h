@@ -21,6 +21,7 @@ struct Evaluation {
     GradationProfile profile;
     XDrift drift;
     GradationMap map;  ///< full only; map: relabelled
+    GradationProfile plain_check;  ///< map only: plain bins of the same strips tiled over the width; empty otherwise
     std::vector<double> target, weight;  ///< per bin
     Misfit misfit, drift_misfit;
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;
@@ -42,7 +43,19 @@ class Evaluator {
     virtual Fidelity fidelity() const = 0;
 };
 
-/// From run results to numbers, shared by every evaluator: fills misfits, objective and residuals.
+/// The design's footprint: the study's, shifted by footprint_offset and kept on the platform; y range cut to the width [m].
+Footprint footprint_of(const Study& study, const Design& design);
+/// Weight per bin: mean of the target's zones over the bin; 0 outside the footprint and within 2 D90 of a side (wall or periodic seam).
+std::vector<double> bin_weights(const Study& study);
+/// Target per bin: mean of g over the bin [-].
+std::vector<double> bin_targets(const Study& study);
+
+/// From run results to numbers, shared by every evaluator: fills target, weight, misfits, objective and residuals.
+/// objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0, min_coverage - coverage) [GI units],
+/// m = raw misfit in the study's norm, d = rms x drift. Raw, not debiased: debiasing is flat at zero and stops a search there; the
+/// floor hardly changes between designs on one map. Without any counting bin the health becomes "no_bins" and the objective 10.
 void judge(const Study& study, Evaluation& evaluation);
+/// Objective of an evaluation that has no numbers: worse than any real one (a misfit is at most 1).
+inline constexpr double kNotEvaluable = 10;
 
 }  // namespace gradwright

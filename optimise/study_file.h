@@ -18,6 +18,8 @@ struct InputProblem {
 struct InputError {
     std::vector<InputProblem> problems;
 };
+/// The problems numbered, one a line, for people. Ends with a newline.
+std::string report_of(const InputError& error);
 
 /// `overrides`: "key.path=toml value", applied before validation (from --set).
 Study read_study(const std::string& file, const std::vector<std::string>& overrides = {});
@@ -26,6 +28,10 @@ Study parse_study(const std::string& text, const std::string& file_name, const s
 /// "40 um", "0.02 J/m2", "5 deg", "100 mm/s" -> SI number. `dimension`: "length", "speed", "angle", "work_of_adhesion", "pressure",
 /// "density", "acceleration". Throws std::invalid_argument with the rule.
 double parse_quantity(const std::string& text, const std::string& dimension);
+
+/// An SI number for people: "40 um", "3.2 mm", "100 mm/s", "195 GPa"; 6 significant digits, the unit that reads best.
+/// `dimension` as in parse_quantity; "" = a plain number.
+std::string format_quantity(double si, const std::string& dimension);
 
 /// Nearest of `valid` to `word` by edit distance; empty when nothing is near.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& valid);

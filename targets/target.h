@@ -22,8 +22,8 @@ struct Target {
     double centre = 0, width_10_90 = 0;
     // table: piecewise linear, constant beyond its ends
     std::vector<double> table_y, table_gi;
-    std::string table_file;          ///< as given, for the report
-    std::vector<TargetZone> zones;   ///< later zones win; outside all zones weight 1
+    std::string table_file;         ///< as given, for the report
+    std::vector<TargetZone> zones;  ///< later zones win; outside all zones weight 1
 
     double operator()(double y) const;
     /// Mean of g over [low, high): what a bin of that width can show [-].
@@ -35,8 +35,8 @@ struct Target {
 Target linear_target(double y0, double gi0, double y1, double gi1);
 Target sigmoid_target(double centre, double width_10_90, double gi_low = 0, double gi_high = 1);
 Target step_target(double y, double gi_low = 0, double gi_high = 1);
-/// CSV with two columns y [m, or with unit named in the header as y_mm / y_um / y_m] and gi. Throws std::runtime_error
-/// naming file, line and rule.
+/// CSV with two columns y [m, or with unit named in the header as y_mm / y_um / y_m] and gi. Throws
+/// std::runtime_error naming file, line and rule.
 Target table_target(const std::string& csv_file);
 std::vector<std::string> problems(const Target& target);  ///< all at once; empty when sound
 

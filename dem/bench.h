@@ -1,0 +1,44 @@
+// The engine's own speed: settled and flowing beds of the default study's physics, by stage.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "dem/scene.h"
+
+namespace gradwright {
+
+struct BenchOptions {
+    std::vector<double> grains = {20000};  ///< wanted sizes, mobile grains
+    std::vector<int> threads = {1};
+    long steps = 2000;           ///< timed steps a case
+    Scene scene;                 ///< physics: powders, law, time step; lengths are chosen from the size
+    std::string cache_folder;    ///< settled beds
+    std::function<void(const std::string& stage, double fraction)> progress;
+};
+
+struct BenchCase {
+    std::string name;  ///< "settled"
+    long grains = 0;
+    int threads = 1;
+    double grain_steps_per_second = 0;  ///< grains whose forces were evaluated, nobody asleep
+    double seconds = 0;
+    std::map<std::string, double> stages;  ///< seconds: law, grains, near_list, candidates
+    double bytes_per_grain = 0;
+    double contacts_per_grain = 0;
+    std::string state_hash;
+};
+
+struct BenchResult {
+    int cores = 0;
+    std::string isa;  ///< instruction set the program was compiled for
+    std::vector<BenchCase> cases;
+};
+
+BenchResult run_bench(const BenchOptions& options);
+
+/// Instruction set this program was compiled for: "AVX-512", "AVX2", ...
+std::string compiled_isa();
+
+}  // namespace gradwright

@@ -1,0 +1,225 @@
+// Cell order and candidate pairs: all pairs with a gap below the skin, found through a grid of cells; and who sleeps.
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "dem/kernel.h"
+
+namespace gradwright {
+namespace {
+
+constexpr std::size_t kBlock = 256;  // grains per work block: fixed, so that results never depend on the thread count
+
+template <class V>
+void permute(V& values, const std::vector<std::int32_t>& order) {
+    V sorted(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
+    values.swap(sorted);
+}
+
+}  // namespace
+
+void Engine::remove_grains(const std::function<bool(std::size_t)>& predicate) {
+    std::vector<std::uint8_t> drop(state_.size(), 0);
+    bool any = false;
+    for (std::size_t i = 0; i < state_.size(); ++i) {
+        drop[i] = !state_.fixed[i] && predicate(i);
+        any = any || drop[i];
+    }
+    if (!any) return;
+    // Marked by an x beyond the end; rebuild_candidates takes them out and carries the remaining contacts over.
+    for (std::size_t i = 0; i < state_.size(); ++i)
+        if (drop[i]) state_.x[i] = 2e9;
+    wake_all();
+    rebuild_candidates();
+    kernel_->carry_history();
+    update_sleep();  // who is awake, in the new order
+    kernel_->rebuild_near();
+    kernel_->write_records();
+    travel_ = 0;
+    lists_valid_ = true;
+}
+
+void Engine::rebuild_candidates() {
+    auto& s = state_;
+    skin_ = options_.skin > 0 ? options_.skin : 0.45 * smallest_radius_ + 0.15 * largest_radius_;
+    near_skin_ = options_.near_skin > 0 ? options_.near_skin : 0.12 * smallest_radius_;
+    const double cell = 2 * largest_radius_ + skin_;
+
+    double lo_x = 1e30, hi_x = -1e30, lo_z = 1e30, hi_z = -1e30, lo_y = 1e30, hi_y = -1e30;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (s.x[i] > options_.remove_beyond_x && !s.fixed[i]) continue;
+        lo_x = std::min(lo_x, s.x[i]);
+        hi_x = std::max(hi_x, s.x[i]);
+        lo_y = std::min(lo_y, s.y[i]);
+        hi_y = std::max(hi_y, s.y[i]);
+        lo_z = std::min(lo_z, s.z[i]);
+        hi_z = std::max(hi_z, s.z[i]);
+    }
+    const bool periodic = options_.period_y > 0;
+    const double span_y = periodic ? options_.period_y : std::max(hi_y - lo_y, cell);
+    auto cells_of = [&](double span) { return static_cast<int>(std::clamp(std::floor(span / cell), 1.0, 4000.0)); };
+    const int nx = cells_of(std::max(hi_x - lo_x, 0.0) + cell), ny = periodic ? cells_of(span_y) : cells_of(span_y + cell);
+    const int nz = std::min(cells_of(std::max(hi_z - lo_z, 0.0) + cell), 512);
+    const double inv_y = ny / (periodic ? span_y : span_y + cell);
+
+    auto cell_of = [&](std::size_t i) {
+        const int cx = std::clamp(static_cast<int>((s.x[i] - lo_x) / cell), 0, nx - 1);
+        double y = s.y[i] - (periodic ? 0 : lo_y);
+        if (periodic) y -= span_y * std::floor(y / span_y);
+        const int cy = std::clamp(static_cast<int>(y * inv_y), 0, ny - 1);
+        const int cz = std::clamp(static_cast<int>((s.z[i] - lo_z) / cell), 0, nz - 1);
+        return (cx * ny + cy) * nz + cz;
+    };
+
+    // Counting sort into cell order; stable, so the order is a function of the state alone.
+    const std::size_t old_count = s.size();
+    std::vector<std::int32_t> cell_index(old_count), first(static_cast<std::size_t>(nx) * ny * nz + 2, 0);
+    for (std::size_t i = 0; i < old_count; ++i) {
+        if (s.x[i] > options_.remove_beyond_x && !s.fixed[i]) {
+            cell_index[i] = -1;
+            continue;
+        }
+        cell_index[i] = cell_of(i);
+        ++first[cell_index[i] + 1];
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::int32_t> order(first.back()), cursor(first.begin(), first.end() - 1);
+    new_index_.assign(old_count, -1);
+    for (std::size_t i = 0; i < old_count; ++i) {
+        if (cell_index[i] < 0) continue;
+        const std::int32_t at = cursor[cell_index[i]]++;
+        order[at] = static_cast<std::int32_t>(i);
+        new_index_[i] = at;
+    }
+    s.for_each_array([&](auto& array) { permute(array, order); });
+    const std::size_t n = s.size();
+    built_x_ = s.x;
+    built_y_ = s.y;
+    built_z_ = s.z;
+
+    // Candidates j > i of every grain, block by block.
+    const std::size_t blocks = (n + kBlock - 1) / kBlock;
+    std::vector<std::vector<std::int32_t>> found(blocks);
+    candidate_first_.assign(n + 1, 0);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+    for (std::size_t block = 0; block < blocks; ++block) {
+        auto& list = found[block];
+        list.reserve(kBlock * 10);
+        for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
+            const std::size_t before = list.size();
+            const int cx = std::clamp(static_cast<int>((s.x[i] - lo_x) / cell), 0, nx - 1);
+            double y = s.y[i] - (periodic ? 0 : lo_y);
+            if (periodic) y -= span_y * std::floor(y / span_y);
+            const int cy = std::clamp(static_cast<int>(y * inv_y), 0, ny - 1);
+            const int cz = std::clamp(static_cast<int>((s.z[i] - lo_z) / cell), 0, nz - 1);
+            const double reach = s.radius[i] + skin_;
+            int rows[3], row_count = 0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                int row = cy + dy;
+                if (periodic) row = (row + ny) % ny;
+                if (row < 0 || row >= ny) continue;
+                bool known = false;
+                for (int k = 0; k < row_count; ++k) known = known || rows[k] == row;
+                if (!known) rows[row_count++] = row;
+            }
+            for (int ix = std::max(cx - 1, 0); ix <= std::min(cx + 1, nx - 1); ++ix) {
+                for (int k = 0; k < row_count; ++k) {
+                    const std::size_t base = (static_cast<std::size_t>(ix) * ny + rows[k]) * nz;
+                    const std::int32_t from = first[base + std::max(cz - 1, 0)], to = first[base + std::min(cz + 1, nz - 1) + 1];
+                    for (std::int32_t j = std::max<std::int32_t>(from, static_cast<std::int32_t>(i) + 1); j < to; ++j) {
+                        double dy = s.y[i] - s.y[j];
+                        if (periodic) dy -= span_y * std::nearbyint(dy / span_y);
+                        const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
+                        const double cut = reach + s.radius[j];
+                        if (dx * dx + dy * dy + dz * dz < cut * cut && !(s.fixed[i] && s.fixed[j])) list.push_back(j);
+                    }
+                }
+            }
+            candidate_first_[i + 1] = static_cast<std::int32_t>(list.size() - before);
+        }
+    }
+    std::partial_sum(candidate_first_.begin(), candidate_first_.end(), candidate_first_.begin());
+    candidate_.resize(candidate_first_[n]);
+    candidate_owner_.resize(candidate_first_[n]);
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::size_t block = 0; block < blocks; ++block) {
+        std::copy(found[block].begin(), found[block].end(), candidate_.begin() + candidate_first_[block * kBlock]);
+        for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i)
+            std::fill(candidate_owner_.begin() + candidate_first_[i], candidate_owner_.begin() + candidate_first_[i + 1],
+                      static_cast<std::int32_t>(i));
+    }
+
+    // Reverse list: for every grain the candidate numbers in which it is the second, ascending.
+    reverse_first_.assign(n + 1, 0);
+    for (const std::int32_t j : candidate_) ++reverse_first_[j + 1];
+    std::partial_sum(reverse_first_.begin(), reverse_first_.end(), reverse_first_.begin());
+    reverse_.resize(candidate_.size());
+    std::vector<std::int32_t> at(reverse_first_.begin(), reverse_first_.end() - 1);
+    for (std::size_t c = 0; c < candidate_.size(); ++c) reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(c);
+}
+
+// A grain sleeps when it and every near neighbour have been slower than sleep_speed for sleep_time; it wakes when an awake near
+// neighbour is faster than wake_speed or a moving body comes within its diameter. The wake front runs one neighbour per refresh
+// of the near list (about 10 m/s at the default time step), faster than a disturbance travels in a softened bed.
+void Engine::update_sleep() {
+    auto& s = state_;
+    const std::size_t n = s.size();
+    if (options_.sleep) {
+        const std::int32_t needed = static_cast<std::int32_t>(options_.sleep_time / options_.time_step);
+        std::vector<float> speed(n, 0.0f);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (s.fixed[i] || s.asleep[i]) continue;
+            const double v2 = s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
+            const double w2 = s.wx[i] * s.wx[i] + s.wy[i] * s.wy[i] + s.wz[i] * s.wz[i];
+            speed[i] = static_cast<float>(std::sqrt(std::max(v2, w2 * s.radius[i] * s.radius[i])));
+            s.quiet[i] = speed[i] < options_.sleep_speed ? s.quiet[i] + static_cast<std::int32_t>(steps_since_near_) : 0;
+        }
+        std::vector<std::uint8_t> next(s.asleep);
+        const double wake = options_.wake_speed;
+#pragma omp parallel for schedule(static, 256) num_threads(threads_)
+        for (std::size_t i = 0; i < n; ++i) {
+            if (s.fixed[i]) continue;
+            if (!s.asleep[i] && s.quiet[i] < needed) continue;
+            bool calm = true, hit = false;
+            auto look = [&](std::size_t j) {
+                if (s.fixed[j] || s.asleep[j]) return;
+                double dy = s.y[i] - s.y[j];
+                if (options_.period_y > 0) dy -= options_.period_y * std::nearbyint(dy / options_.period_y);
+                const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
+                const double cut = s.radius[i] + s.radius[j] + near_skin_;
+                if (dx * dx + dy * dy + dz * dz > cut * cut) return;
+                if (s.quiet[j] < needed / 2) calm = false;
+                if (speed[j] > wake) hit = true;
+            };
+            for (std::int32_t c = candidate_first_[i]; c < candidate_first_[i + 1]; ++c) look(candidate_[c]);
+            for (std::int32_t r = reverse_first_[i]; r < reverse_first_[i + 1]; ++r) {
+                look(static_cast<std::size_t>(candidate_owner_[reverse_[r]]));
+            }
+            if (bodies_move_) {
+                for (std::size_t b = 0; b < bodies_.size(); ++b) {
+                    if (body_removed_[b] || (bodies_[b].speed_x == 0 && bodies_[b].speed_z == 0)) continue;
+                    const auto near = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_, bodies_[b].speed_z * body_time_,
+                                                    s.x[i], s.y[i], s.z[i]);
+                    if (near.distance < 3 * s.radius[i]) hit = true;
+                }
+            }
+            if (s.asleep[i]) next[i] = hit ? 0 : 1;
+            else next[i] = calm && !hit ? 1 : 0;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            if (next[i] == s.asleep[i]) continue;
+            s.asleep[i] = next[i];
+            s.quiet[i] = 0;
+            s.vx[i] = s.vy[i] = s.vz[i] = s.wx[i] = s.wy[i] = s.wz[i] = 0;
+            lists_valid_ = false;  // records must be written anew
+        }
+    }
+    awake_.clear();
+    for (std::size_t i = 0; i < n; ++i)
+        if (!s.fixed[i] && !s.asleep[i]) awake_.push_back(static_cast<std::int32_t>(i));
+}
+
+}  // namespace gradwright

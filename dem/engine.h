@@ -1,0 +1,166 @@
+// The engine: grains and bodies in, motion out. One instance is one run; nothing is global.
+// A step reads as named stages: touching pairs and walls -> contact law -> sums per grain -> integrate (-> refresh lists if moved).
+//
+// Two lists: candidates within `skin` (rebuilt with the cell order, about every 100-200 steps) and, of those, the near pairs within
+// `near_skin` (about every 10-20 steps), which are what the law sees. A near pair keeps its place between refreshes, so that the
+// law reads and writes its history in place and one grain's sums run over fixed slots in fixed order: same bits on any number of
+// threads, no atomics. (Measured alternative: test all candidates every step and compress, see contact_list.cpp.)
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dem/boundary.h"
+#include "dem/contact_law.h"
+#include "dem/material.h"
+#include "dem/scene.h"
+#include "dem/state.h"
+
+namespace gradwright {
+
+struct EngineOptions {
+    std::vector<Material> materials;  ///< index used by grains and bodies; youngs_modulus = infinity is rigid
+    Interaction interaction;
+    double softening = 1;  ///< E' = s E; with `cohesion_number` Gamma' = Gamma s^(2/5)
+    AdhesionScaling adhesion_scaling = AdhesionScaling::cohesion_number;
+    double time_step = 0;                          ///< [s], > 0
+    std::array<double, 3> gravity = {0, 0, -9.81};  ///< [m/s2]
+    double period_y = 0;                           ///< [m], 0 = not periodic
+    Precision precision = Precision::single_law;
+    bool sleep = false;
+    double sleep_speed = 0.5e-3;   ///< grains slower than this ... [m/s]
+    double sleep_time = 0.3e-3;    ///< ... for so long, with neighbours alike, fall asleep [s]
+    double wake_speed = 1.0e-3;    ///< an awake near neighbour faster than this wakes a sleeper [m/s]
+    double skin = 0;               ///< candidate skin [m], 0 = from the grain size
+    double near_skin = 0;          ///< near-pair skin [m], 0 = from the grain size
+    int threads = 0;               ///< 0 = OpenMP's default
+    double speed_limit = 20;       ///< faster grains mean the run has diverged [m/s]
+    double remove_beyond_x = 1e9;  ///< grains past this x leave the run (overflow) [m]
+    LawFault fault;
+};
+
+struct GrainSpec {
+    double x = 0, y = 0, z = 0, vx = 0, vy = 0, vz = 0, wx = 0, wy = 0, wz = 0;
+    double radius = 0;
+    int material = 0;
+    bool fixed = false;
+};
+
+/// Numbers of one material pair, softened.
+struct PairConstants {
+    double e_star = 0, g_star8 = 0;  ///< E*, 8 G* [Pa]
+};
+
+struct EngineTimes {
+    double law = 0, grains = 0, near_list = 0, candidates = 0;  ///< [s] wall
+};
+
+/// Force of all grains on one body or on the fixed grains [N].
+struct BodyForce {
+    double x = 0, y = 0, z = 0;
+};
+
+class Engine {
+  public:
+    explicit Engine(const EngineOptions& options);
+    ~Engine();
+    Engine(const Engine&) = delete;
+    Engine& operator=(const Engine&) = delete;
+
+    /// Returns the grain's id (0, 1, ... in order of adding).
+    int add_grain(const GrainSpec& grain);
+    int add_body(const Body& body);
+    void remove_body(int body);  ///< its contacts end; other bodies keep their numbers
+    /// Remove mobile grains by id (levelling, overflow).
+    void remove_grains(const std::function<bool(std::size_t index)>& predicate);
+    /// Give grain index i another material: its mass and its contacts' constants change, its springs stay.
+    void set_material(std::size_t i, int material);
+    /// After changing materials, radii or positions from outside: contacts keep their springs where they persist.
+    void refresh();
+    void wake_all();
+    /// Multiply every velocity and spin (a quench while packing).
+    void scale_velocities(double factor);
+
+    /// Up to `steps` steps; fewer when something went wrong (see `failed`). Returns the number done.
+    long advance(long steps);
+
+    const State& state() const { return state_; }
+    State& state() { return state_; }
+    const std::vector<Body>& bodies() const { return bodies_; }
+    double body_shift_x(int body) const { return bodies_[body].speed_x * body_time_; }
+    double time() const { return time_; }
+    long steps() const { return steps_; }
+    double grain_steps() const { return grain_steps_; }
+    double time_step() const { return options_.time_step; }
+    const EngineTimes& times() const { return times_; }
+    std::size_t mobile() const;
+    std::size_t awake() const { return awake_.size(); }
+    /// Velocity of grain index i at the last whole step, predicted [m/s].
+    std::array<double, 3> velocity(std::size_t i) const;
+    std::array<double, 3> spin(std::size_t i) const;
+    double max_speed() const;       ///< over mobile grains [m/s]
+    double kinetic_energy() const;  ///< [J]
+    double max_overlap_ratio();     ///< overlap / smaller radius now, over near pairs and walls
+    double max_overlap_ratio_seen() const { return max_overlap_seen_; }
+    double mean_coordination();     ///< contacts per mobile grain (floor and walls counted once)
+    std::size_t contacts() const;   ///< pair contacts alive
+    /// Grain indices whose overlap with a body exceeds `ratio` of their radius now.
+    std::vector<std::size_t> overlapping_body(int body, double ratio) const;
+    BodyForce force_on_body(int body) const;  ///< of the last force evaluation
+    BodyForce force_on_fixed() const;
+    double memory_bytes() const;
+    /// "" while sound, else what went wrong: "speed" or "not finite".
+    const std::string& failed() const { return failed_; }
+    std::string state_hash() const;  ///< of ids, positions and velocities, independent of the storage order
+    PairConstants pair_constants(int a, int b) const { return pairs_[a * static_cast<int>(options_.materials.size()) + b]; }
+    double work_of_adhesion() const { return adhesion_; }  ///< scaled Gamma' [J/m2]
+    int threads() const { return threads_; }
+
+    /// Bodies stand still until this instant counts: their shift is speed x (time since).
+    void start_bodies() { body_time_ = 0; bodies_move_ = true; }
+    void stop_bodies() { bodies_move_ = false; }
+
+  private:
+    struct Kernel;
+    template <class T>
+    struct KernelOf;
+
+    void rebuild_candidates();
+    void update_sleep();
+    void check_health();
+
+    EngineOptions options_;
+    State state_;
+    std::vector<Body> bodies_;
+    std::vector<std::uint8_t> body_removed_;
+    std::vector<PairConstants> pairs_;
+    LawConstants law_;
+    double adhesion_ = 0;
+    double skin_ = 0, near_skin_ = 0, largest_radius_ = 0, smallest_radius_ = 1e9;
+    int threads_ = 1;
+    double time_ = 0, body_time_ = 0;
+    bool bodies_move_ = false;
+    long steps_ = 0;
+    double grain_steps_ = 0;
+    double travel_ = 0;  ///< closing distance possible since the near list was made [m]
+    long steps_since_near_ = 0;
+    bool lists_valid_ = false, first_kick_ = true;
+    bool constants_valid_ = true;  ///< false: pair constants are computed anew at the next refresh
+    double max_overlap_seen_ = 0;
+    std::string failed_;
+    EngineTimes times_;
+
+    // candidate list, in cell order
+    std::vector<double> built_x_, built_y_, built_z_;
+    std::vector<std::int32_t> candidate_first_, candidate_, candidate_owner_, candidate_slot_;
+    std::vector<std::int32_t> reverse_first_, reverse_;  ///< candidate numbers in which a grain is the second
+    std::vector<std::int32_t> new_index_;                ///< of the last permutation: old index -> new index, -1 removed
+    std::vector<std::int32_t> awake_;
+
+    std::unique_ptr<Kernel> kernel_;
+};
+
+}  // namespace gradwright

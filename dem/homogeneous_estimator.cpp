@@ -1,0 +1,209 @@
+#include "dem/homogeneous_estimator.h"
+
+#include <limits>
+#include <numeric>
+
+#include "dem/block_variance.h"
+
+namespace gradwright {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Shares of a bin that lie on A's side for one grain at a time. A curve that is a function of x is a single
+/// comparison in y and is averaged over the bin exactly; any other curve is sampled at `samples_per_bin`
+/// points with its exact signed distance.
+class LabelShares {
+  public:
+    LabelShares(const PartitionCurve& partition, const BinGrid& bins, const HomogeneousOptions& options)
+        : partition_(partition), bins_(bins), options_(options), curve_({}, {}) {
+        std::vector<PlanPoint> points = partition.points;
+        const auto rises = [](PlanPoint a, PlanPoint b) {
+            return a.x >= b.x;
+        };  // adjacent_find: first that does not rise
+        if (points.back().x < points.front().x) {
+            std::reverse(points.begin(), points.end());
+            a_above_ = false;
+        }
+        over_x_ = std::adjacent_find(points.begin(), points.end(), rises) == points.end();
+        if (!over_x_) return;
+        std::vector<double> x, y;
+        for (PlanPoint p : points) {
+            x.push_back(p.x);
+            y.push_back(p.y);
+        }
+        curve_ = CurveOverX<double>(x, y);
+    }
+
+    /// share of every bin for a grain from origin_x that travelled `way` across.
+    void of_grain(double origin_x, double way, std::vector<double>& share) const {
+        if (over_x_) {
+            double yc = 0, widening = 1;
+            curve_.evaluate(origin_x, yc, widening);
+            std::fill(share.begin(), share.end(), 0.0);
+            const int filled = visit_bins<double>(bins_, yc + way, options_.smoothing * widening,
+                                                  [&](int bin, double part) { share[bin] = part; });
+            std::fill(share.begin() + std::min(filled, bins_.count), share.end(), 1.0);
+            if (!a_above_) {
+                for (double& s : share) s = 1 - s;
+            }
+            return;
+        }
+        const int samples = std::max(1, options_.samples_per_bin);
+        for (int bin = 0; bin < bins_.count; ++bin) {
+            double sum = 0;
+            for (int k = 0; k < samples; ++k) {
+                const double y = bins_.low(bin) + bins_.width * (k + 0.5) / samples;
+                sum += step(partition_.signed_distance(origin_x, y - way));
+            }
+            share[bin] = sum / samples;
+        }
+    }
+
+  private:
+    double step(double distance) const {
+        if (options_.smoothing <= 0) return distance > 0 ? 1 : 0;
+        const double s = std::clamp(0.5 * (1 + distance / options_.smoothing), 0.0, 1.0);
+        return s * s * s * (10 + s * (6 * s - 15));
+    }
+
+    const PartitionCurve& partition_;
+    const BinGrid& bins_;
+    const HomogeneousOptions& options_;
+    CurveOverX<double> curve_;
+    bool over_x_ = false, a_above_ = true;
+};
+
+/// Moments of every bin; blocks are the layers when there are >= 3 (packing replicates), else blocks of x in
+/// each layer.
+std::vector<BinMoments> moments_of(const PooledGrains& grains, const LabelShares& shares, const BinGrid& bins,
+                                   double block) {
+    const bool by_layer = grains.layers >= 3;
+    const int cuts = by_layer ? 1 : block_count(grains.x_low, grains.x_high, block);
+    std::vector<BinMoments> moments(bins.count, BinMoments(grains.layers * cuts));
+    std::vector<double> share(bins.count);
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        shares.of_grain(grains.origin_x[i], grains.way[i], share);
+        const double along = (grains.deposit_x[i] - grains.x_low) / (grains.x_high - grains.x_low);
+        const int cell = grains.layer[i] * cuts + std::min(cuts - 1, static_cast<int>(along * cuts));
+        for (int bin = 0; bin < bins.count; ++bin) {
+            moments[bin].add(cell, grains.deposit_x[i], grains.volume[i], share[bin]);
+        }
+    }
+    return moments;
+}
+
+BlockTrend trend_of(const PooledGrains& grains) {
+    return grains.layers >= 3 ? BlockTrend::none : BlockTrend::linear;
+}
+
+/// Means of every bin without moments: the fast path of a search.
+std::vector<double> means_of(const PooledGrains& grains, const LabelShares& shares, const BinGrid& bins) {
+    std::vector<double> mean(bins.count, 0), share(bins.count);
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        shares.of_grain(grains.origin_x[i], grains.way[i], share);
+        for (int bin = 0; bin < bins.count; ++bin) mean[bin] += grains.volume[i] * share[bin];
+    }
+    const double total = grains.total_volume();
+    for (double& m : mean) m = total > 0 ? m / total : kNan;
+    return mean;
+}
+
+}  // namespace
+
+double PooledGrains::total_volume() const {
+    return std::accumulate(volume.begin(), volume.end(), 0.0);
+}
+
+PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high) {
+    PooledGrains pooled;
+    pooled.x_low = x_low;
+    pooled.x_high = x_high;
+    pooled.layers = static_cast<int>(layers.size());
+    for (int l = 0; l < pooled.layers; ++l) {
+        const Layer& layer = layers[l];
+        for (std::size_t i = 0; i < layer.size(); ++i) {
+            if (!(layer.deposit_x[i] >= x_low && layer.deposit_x[i] < x_high)) continue;
+            pooled.origin_x.push_back(layer.origin_x[i]);
+            pooled.way.push_back(layer.deposit_y[i] - layer.origin_y[i]);
+            pooled.deposit_x.push_back(layer.deposit_x[i]);
+            pooled.volume.push_back(layer.volume[i]);
+            pooled.layer.push_back(l);
+        }
+    }
+    return pooled;
+}
+
+PooledGrains part_of(const PooledGrains& grains, double x_low, double x_high) {
+    PooledGrains part;
+    part.x_low = x_low;
+    part.x_high = x_high;
+    part.layers = grains.layers;
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        if (!(grains.deposit_x[i] >= x_low && grains.deposit_x[i] < x_high)) continue;
+        part.origin_x.push_back(grains.origin_x[i]);
+        part.way.push_back(grains.way[i]);
+        part.deposit_x.push_back(grains.deposit_x[i]);
+        part.volume.push_back(grains.volume[i]);
+        part.layer.push_back(grains.layer[i]);
+    }
+    return part;
+}
+
+Thirds thirds_of(const PooledGrains& grains) {
+    const double third = (grains.x_high - grains.x_low) / 3;
+    return {part_of(grains, grains.x_low, grains.x_low + third),
+            part_of(grains, grains.x_high - third, grains.x_high)};
+}
+
+GradationProfile homogeneous_profile(const PooledGrains& grains, const PartitionCurve& partition,
+                                     const BinGrid& bins, const HomogeneousOptions& options) {
+    const LabelShares shares(partition, bins, options);
+    if (options.resamples > 0) {
+        const std::vector<BinMoments> moments = moments_of(grains, shares, bins, options.block);
+        return profile_of(moments, bin_variances(moments, trend_of(grains), BinGrains::common), bins);
+    }
+    GradationProfile profile;
+    profile.gi = means_of(grains, shares, bins);
+    const double total = grains.total_volume();
+    double square = 0;
+    for (double v : grains.volume) square += v * v;
+    for (int bin = 0; bin < bins.count; ++bin) profile.y_m.push_back(bins.centre(bin));
+    profile.standard_error.assign(bins.count, kNan);
+    profile.volume.assign(bins.count, total);
+    profile.n_eff.assign(bins.count, square > 0 ? total * total / square : 0);
+    return profile;
+}
+
+XDrift homogeneous_drift(const PooledGrains& grains, const PartitionCurve& partition, const BinGrid& bins,
+                         const HomogeneousOptions& options) {
+    const LabelShares shares(partition, bins, options);
+    const Thirds thirds = thirds_of(grains);
+    if (options.resamples <= 0) {
+        XDrift drift;
+        const std::vector<double> first = means_of(thirds.first, shares, bins);
+        drift.difference = means_of(thirds.last, shares, bins);
+        for (int bin = 0; bin < bins.count; ++bin) drift.difference[bin] -= first[bin];
+        drift.standard_error.assign(bins.count, kNan);
+        summarise(drift);
+        drift.noise_floor = kNan;
+        return drift;
+    }
+    const std::vector<BinMoments> whole = moments_of(grains, shares, bins, options.block);
+    return drift_of(whole, bin_variances(whole, trend_of(grains), BinGrains::common),
+                    moments_of(thirds.first, shares, bins, options.block),
+                    moments_of(thirds.last, shares, bins, options.block));
+}
+
+GradationProfile homogeneous_profile(std::span<const Layer> layers, const PartitionCurve& partition,
+                                     double x_low, double x_high, const BinGrid& bins,
+                                     const HomogeneousOptions& options) {
+    return homogeneous_profile(pool_grains(layers, x_low, x_high), partition, bins, options);
+}
+
+XDrift homogeneous_drift(std::span<const Layer> layers, const PartitionCurve& partition, double x_low,
+                         double x_high, const BinGrid& bins, const HomogeneousOptions& options) {
+    return homogeneous_drift(pool_grains(layers, x_low, x_high), partition, bins, options);
+}
+
+}  // namespace gradwright

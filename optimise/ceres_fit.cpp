@@ -1,0 +1,268 @@
+#include "optimise/ceres_fit.h"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "dem/random.h"
+#include "optimise/bounded_search.h"
+#include "optimise/evaluation.h"
+
+namespace gradwright {
+namespace {
+
+struct ResidualFunctor {
+    const FitProblem* problem;
+    const PartitionFamily* family;
+    double smoothing;
+
+    template <class T>
+    bool operator()(const T* const* parameters, T* out) const {
+        std::vector<T> residual;
+        problem->residuals(*family, parameters[0], smoothing, residual);
+        std::copy(residual.begin(), residual.end(), out);
+        return true;
+    }
+};
+
+/// Derivatives are carried `Stride` at a time: the curve of five knots (8 parameters) in one pass, a straight
+/// one in a short pass.
+template <int Stride>
+ceres::CostFunction* autodiff(const FitProblem& problem, const PartitionFamily& family, double smoothing) {
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<ResidualFunctor, Stride>(
+        new ResidualFunctor{&problem, &family, smoothing});
+    cost->AddParameterBlock(int(family.size()));
+    cost->SetNumResiduals(problem.residual_count());
+    return cost;
+}
+
+/// Levenberg-Marquardt at one kernel width, in place; returns the evaluations spent.
+int descend(const FitProblem& problem, const PartitionFamily& family, double smoothing, int iterations,
+            std::vector<double>& p) {
+    ceres::CostFunction* cost = family.size() <= 4 ? autodiff<4>(problem, family, smoothing)
+                                                   : autodiff<8>(problem, family, smoothing);
+    ceres::Problem least_squares;
+    least_squares.AddResidualBlock(cost, nullptr, p.data());
+    std::vector<int> constant;
+    for (std::size_t i = 0; i < family.size(); ++i) {
+        if (family.high()[i] > family.low()[i]) {
+            least_squares.SetParameterLowerBound(p.data(), int(i), family.low()[i]);
+            least_squares.SetParameterUpperBound(p.data(), int(i), family.high()[i]);
+        } else {
+            constant.push_back(int(i));
+        }
+    }
+    if (!constant.empty())
+        least_squares.SetManifold(p.data(), new ceres::SubsetManifold(int(family.size()), constant));
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.max_num_iterations = iterations;
+    options.function_tolerance = 1e-5;   // relative, of rmse^2: far below any noise floor
+    options.parameter_tolerance = 1e-6;  // times 1.6 mm: far below a grain
+    options.logging_type = ceres::SILENT;
+    options.num_threads = 1;  // same bits on any machine load
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &least_squares, &summary);
+    family.clip(p);
+    return summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+}
+
+/// SBPLX on hard labels: for norms that are no sum of squares (max, mean absolute), whose kinks a quadratic
+/// model would smear.
+int polish(const FitProblem& problem, const PartitionFamily& family, const FitOptions& options,
+           std::vector<double>& p) {
+    BoundedSearch search;
+    search.method = SearchMethod::sbplx;
+    search.low = family.low();
+    search.high = family.high();
+    search.start = p;
+    search.step.assign(family.size(), 0.02);  // 32 um on the coupon: a grain
+    search.budget = options.polish_evaluations;
+    search.stop = options.stop;
+    const BoundedSearchResult found = minimise(
+        [&](const std::vector<double>& trial) { return problem.hard_objective(family, trial); }, search);
+    if (found.evaluations > 0) p = found.best;
+    return found.evaluations;
+}
+
+struct Start {
+    Orientation orientation;
+    std::vector<double> p;     ///< where it stands
+    std::vector<double> best;  ///< best on hard labels so far
+    double objective = kNotEvaluable;
+
+    void keep_best(double hard) {
+        if (hard < objective) {
+            objective = hard;
+            best = p;
+        }
+    }
+};
+
+std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const FitProblem& problem,
+                             const FitOptions& options) {
+    const double length = study.scene.dispenser_length, width = study.dispenser_width;
+    // W^-1 over the same pooled grains that the residuals see
+    std::vector<std::pair<double, double>> origin;
+    for (std::size_t i = 0; i < problem.grains.size(); ++i)
+        origin.emplace_back(problem.grains.origin_x[i], problem.grains.volume[i]);
+    std::sort(origin.begin(), origin.end());
+    std::vector<double> cumulative;
+    double sum = 0;
+    for (const auto& grain : origin) cumulative.push_back(sum += grain.second);
+    const auto quantile = [&](double share) {
+        const auto at = std::lower_bound(cumulative.begin(), cumulative.end(), share * sum);
+        return origin[std::min<std::size_t>(at - cumulative.begin(), origin.size() - 1)].first;
+    };
+
+    Random random(options.seed);
+    std::vector<Start> starts;
+    const auto add = [&](const PartitionFamily& family, const std::vector<double>& p) {
+        starts.push_back({family.orientation(), p, {}});
+        for (int i = 0; i < options.perturbed_starts; ++i) {
+            std::vector<double> moved = p;
+            for (double& number : moved) number += options.perturbation * (2 * random.uniform() - 1);
+            family.clip(moved);
+            starts.push_back({family.orientation(), moved, {}});
+        }
+    };
+    // A user's fixed angle keeps its meaning, A on the left; else the side follows the target.
+    const bool angle_fixed = space.family == Family::straight && !space.angle_deg.free;
+    const bool above = angle_fixed || target_rises(study);
+    for (const bool rising :
+         {!above, above}) {  // A on the platform side first, then on the dispenser's back side
+        const PartitionFamily family(space, length, width, {above, rising});
+        add(family, family.fit_samples(closed_form_curve(study, family.orientation(), quantile)));
+    }
+    if (space.given_points.size() >= 2) {
+        std::vector<PlanPoint> given = space.given_points;
+        const bool runs_back = given.front().x > given.back().x;
+        if (runs_back) std::reverse(given.begin(), given.end());
+        const PartitionFamily family(space, length, width, {!runs_back, given.back().y > given.front().y});
+        std::vector<PlanPoint> samples;
+        for (std::size_t k = 0; k + 1 < given.size(); ++k)
+            for (int i = 0; i < 50; ++i) {
+                const double t = (i + 0.5) / 50;
+                samples.push_back({given[k].x + t * (given[k + 1].x - given[k].x),
+                                   given[k].y + t * (given[k + 1].y - given[k].y)});
+            }
+        add(family, family.fit_samples(samples));
+    }
+    return starts;
+}
+
+}  // namespace
+
+FitProblem::FitProblem(const Study& study, const Design& design, std::span<const Layer> layers)
+    : bins(study.bins),
+      target(bin_targets(study)),
+      weight(bin_weights(study)),
+      drift_target(study.bins.count, 0.0),
+      norm(study.objective.norm),
+      x_drift_weight(study.objective.x_drift_weight) {
+    const Footprint footprint = footprint_of(study, design);
+    grains = pool_grains(layers, footprint.x_low, footprint.x_high);
+    thirds = thirds_of(grains);
+}
+
+bool FitProblem::usable() const {
+    return grains.size() > 0 && std::any_of(weight.begin(), weight.end(), [](double w) { return w > 0; });
+}
+
+int FitProblem::residual_count() const {
+    return 2 * int(std::count_if(weight.begin(), weight.end(), [](double w) { return w > 0; }));
+}
+
+std::pair<double, double> FitProblem::hard_misfit_and_drift(const PartitionFamily& family,
+                                                            std::span<const double> p) const {
+    std::vector<double> x, y, gi, difference;
+    family.knots_of(p.data(), x, y);
+    smooth_homogeneous_profile<double>(grains, x, y, bins, 0, gi);
+    smooth_homogeneous_drift<double>(thirds.first, thirds.last, x, y, bins, 0, difference);
+    const bool above = family.orientation().a_above;
+    std::vector<double> counts(weight.size(), 0.0);
+    for (std::size_t b = 0; b < weight.size(); ++b) {
+        counts[b] = weight[b] > 0;
+        gi[b] = (above ? gi[b] : 1 - gi[b]) - target[b];
+        if (!difference.empty()) difference[b] = (above ? difference[b] : -difference[b]) - drift_target[b];
+    }
+    const double drift = difference.empty() ? 0 : norm_of(Norm::rmse, difference, counts);
+    return {norm_of(norm, gi, weight), drift};
+}
+
+double FitProblem::hard_objective(const PartitionFamily& family, std::span<const double> p) const {
+    const auto [misfit, drift] = hard_misfit_and_drift(family, p);
+    return std::sqrt(misfit * misfit + x_drift_weight * drift * drift);
+}
+
+FitResult fit_partition(const Study& study, const DesignSpace& space, const Design& design,
+                        const FitProblem& problem, const FitOptions& options) {
+    FitResult result;
+    result.design = design;
+    result.objective = kNotEvaluable;
+    if (!problem.usable()) {
+        result.message = problem.grains.size() == 0 ? "no laid grain in the footprint" : "no bin counts";
+        return result;
+    }
+    if (!space.partition_free) {
+        result.ok = true;
+        result.message = "the partition is fixed";
+        return result;
+    }
+    const double length = study.scene.dispenser_length, width = study.dispenser_width;
+    // All starts at the widest kernel, the best of them down to the narrowest. A kernel's optimum is not the
+    // hard labels', so each candidate keeps the best it has seen on hard labels and never ends worse than it
+    // began.
+    std::vector<Start> candidates = starts_of(study, space, problem, options);
+    const auto stopped = [&options] { return options.stop && options.stop(); };
+    const auto improve = [&](Start& candidate, double kernel, int iterations) {
+        const PartitionFamily family(space, length, width, candidate.orientation);
+        result.evaluations += descend(problem, family, kernel, iterations, candidate.p);
+        candidate.keep_best(problem.hard_objective(family, candidate.p));
+    };
+    for (Start& candidate : candidates) {
+        const PartitionFamily family(space, length, width, candidate.orientation);
+        candidate.keep_best(problem.hard_objective(family, candidate.p));
+        if (&candidate == &candidates.front()) result.start_objective = candidate.objective;
+        if (stopped()) break;
+        ++result.starts;
+        improve(candidate, options.kernels.front(), std::min(options.iterations, options.first_iterations));
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Start& a, const Start& b) { return a.objective < b.objective; });
+    candidates.resize(std::min(candidates.size(), std::size_t(std::max(1, options.finalists))));
+    for (Start& candidate : candidates) {
+        if (candidate.best.empty()) continue;
+        const PartitionFamily family(space, length, width, candidate.orientation);
+        for (const double kernel : options.kernels)
+            if (!stopped()) improve(candidate, kernel, options.iterations);
+        if (problem.norm != Norm::rmse && options.polish_evaluations > 0 && !stopped()) {
+            candidate.p = candidate.best;
+            result.evaluations += polish(problem, family, options, candidate.p);
+            candidate.keep_best(problem.hard_objective(family, candidate.p));
+        }
+        if (candidate.objective < result.objective) {
+            result.objective = candidate.objective;
+            result.p = candidate.best;
+            result.orientation = candidate.orientation;
+        }
+    }
+    if (result.p.empty()) {
+        result.message = "stopped before the first start was finished";
+        return result;
+    }
+    const PartitionFamily family(space, length, width, result.orientation);
+    result.ok = true;
+    result.design.family = space.family;
+    result.design.partition = family.curve(result.p);
+    result.design.parameters = family.named(result.p);
+    std::tie(result.misfit, result.drift) = problem.hard_misfit_and_drift(family, result.p);
+    result.message = fmt::format("{} starts, {} evaluations: objective {:.4f} from {:.4f} in closed form",
+                                 result.starts, result.evaluations, result.objective, result.start_objective);
+    return result;
+}
+
+}  // namespace gradwright

@@ -1,0 +1,109 @@
+// Least squares of the partition on an origin map (inverse-design.md, Default strategy): Ceres
+// Levenberg-Marquardt within bounds, derivatives by automatic differentiation through the y-homogeneous
+// estimator, several starts, the choice made on hard labels.
+//
+// Residuals over the bins that count (weight w_b > 0, n of them):
+//   sqrt(w_b / sum w) (GI_b - target_b)                then   sqrt(x_drift_weight / n) (drift_b -
+//   drift_target_b)
+// so that |r|^2 = rmse^2 + x_drift_weight drift_rms^2: the square of the objective of `judge` without its
+// price of waste, which no partition changes.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dem/homogeneous_estimator.h"
+#include "optimise/partition_family.h"
+
+namespace gradwright {
+
+/// What the residuals are made of: grains of the footprint and what is asked of them, bin by bin.
+struct FitProblem {
+    PooledGrains grains;
+    Thirds thirds;
+    BinGrid bins;
+    std::vector<double> target, weight, drift_target;  ///< per bin [-]
+    Norm norm = Norm::rmse;     ///< of the choice and the polish; the least squares are always rmse
+    double x_drift_weight = 0;  ///< [-], >= 0; 0 leaves the drift to be only reported
+
+    /// `layers` = the map, footprint shifted as `design` says; targets and weights of the study.
+    FitProblem(const Study& study, const Design& design, std::span<const Layer> layers);
+    bool usable() const;  ///< grains in the footprint and at least one counting bin
+
+    /// Residual vector as above, for T = double or ceres::Jet. `smoothing` = half width of the label kernel
+    /// [m].
+    template <class T>
+    void residuals(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& out) const;
+    int residual_count() const;
+    /// sqrt(m^2 + x_drift_weight d^2) with hard labels and the norm asked for [-].
+    double hard_objective(const PartitionFamily& family, std::span<const double> p) const;
+    /// (m, d) of the above.
+    std::pair<double, double> hard_misfit_and_drift(const PartitionFamily& family,
+                                                    std::span<const double> p) const;
+};
+
+struct FitOptions {
+    /// Label kernel, widest first [m]: wide kernels see beyond the ripple of single grains, the last is half
+    /// a grain.
+    std::vector<double> kernels = {100e-6, 50e-6, 20e-6};
+    int iterations = 40;        ///< per kernel
+    int first_iterations = 12;  ///< at the widest kernel, where all starts take part
+    int finalists =
+        3;  ///< starts that go on to the narrower kernels: the best on hard labels after the widest
+    int perturbed_starts = 6;      ///< around each closed-form start
+    double perturbation = 0.2;     ///< half width, in parameters without unit
+    int polish_evaluations = 400;  ///< NLopt on hard labels, for norms other than rmse; 0 = none
+    std::uint64_t seed = 1;
+    std::function<bool()> stop;  ///< looked at between starts
+};
+
+struct FitResult {
+    bool ok = false;
+    std::string message;
+    Design design;  ///< partition and parameters set, the rest as in the design given
+    Orientation orientation;
+    std::vector<double> p;
+    double objective = 0;  ///< hard labels
+    double misfit = 0, drift = 0;
+    double start_objective = 0;  ///< of the closed form
+    int starts = 0, evaluations = 0;
+};
+
+/// Best partition of `space` on the map. A space that is not free returns `design` as it is, without numbers.
+/// `design` gives all that is not partition. Never throws for a poor fit: `ok` is false when there is nothing
+/// to fit to.
+FitResult fit_partition(const Study& study, const DesignSpace& space, const Design& design,
+                        const FitProblem& problem, const FitOptions& options);
+
+template <class T>
+void FitProblem::residuals(const PartitionFamily& family, const T* p, double smoothing,
+                           std::vector<T>& out) const {
+    std::vector<T> x, y, gi, difference;
+    family.knots_of(p, x, y);
+    smooth_homogeneous_profile<T>(grains, x, y, bins, smoothing, gi);
+    smooth_homogeneous_drift<T>(thirds.first, thirds.last, x, y, bins, smoothing, difference);
+    double sum = 0;
+    int counting = 0;
+    for (const double w : weight) {
+        sum += w;
+        counting += w > 0;
+    }
+    out.clear();
+    const bool above = family.orientation().a_above;
+    for (std::size_t b = 0; b < weight.size(); ++b)
+        if (weight[b] > 0)
+            out.push_back(std::sqrt(weight[b] / sum) * ((above ? gi[b] : T(1.0 - gi[b])) - target[b]));
+    for (std::size_t b = 0; b < weight.size(); ++b) {
+        if (!(weight[b] > 0)) continue;
+        // A third without grains has no drift to be judged by; coverage tells of it.
+        if (difference.empty())
+            out.push_back(T(0.0));
+        else
+            out.push_back(std::sqrt(x_drift_weight / counting) *
+                          ((above ? difference[b] : T(-difference[b])) - drift_target[b]));
+    }
+}
+
+}  // namespace gradwright

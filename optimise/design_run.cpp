@@ -1,0 +1,89 @@
+#include "optimise/design_run.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "optimise/dem_evaluator.h"
+#include "optimise/kinematic_evaluator.h"
+#include "optimise/map_evaluator.h"
+#include "optimise/partition_family.h"
+
+namespace gradwright {
+namespace {
+
+/// SplitMix64 (Steele, Lea, Flood 2014): neighbouring inputs give unrelated outputs.
+std::uint64_t split_mix(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15ULL;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31);
+}
+
+/// Seed number `index` of a study: 52 mixed bits over the lowest, which says what it is for.
+std::uint64_t derived_seed(std::uint64_t study_seed, int index, bool confirmation) {
+    const std::uint64_t mixed = split_mix(split_mix(study_seed) + std::uint64_t(index));
+    return ((mixed >> 12) << 1) | (confirmation ? 1 : 0);
+}
+
+}  // namespace
+
+std::uint64_t map_seed(std::uint64_t study_seed, int index) {
+    return derived_seed(study_seed, index, false);
+}
+std::uint64_t confirmation_seed(std::uint64_t study_seed, int index) {
+    return derived_seed(study_seed, index, true);
+}
+
+Design start_design(const Study& study) {
+    const DesignSpace& space = study.design_space;
+    const double length = study.scene.dispenser_length, width = study.dispenser_width;
+    Design design;
+    design.family = space.family;
+    for (int chamber = 0; chamber < 2; ++chamber)
+        design.fill_fraction[chamber] = space.fill_fraction[chamber].value;
+    design.dosage_factor = space.dosage_factor.value;
+    design.land = space.land.value;
+    design.footprint_offset = space.footprint_offset.value;
+    if (space.family == Family::straight) {
+        design.partition = straight_partition(length, width, space.angle_deg.value * std::numbers::pi / 180,
+                                              space.offset.value);
+        design.parameters = {{"angle_deg", space.angle_deg.value}, {"offset_m", space.offset.value}};
+        return design;
+    }
+    if (space.given_points.size() >= 2) {
+        design.partition.points = space.given_points;
+        for (std::size_t k = 0; k < space.given_points.size(); ++k) {
+            design.parameters.emplace_back(fmt::format("x{}_m", k), space.given_points[k].x);
+            design.parameters.emplace_back(fmt::format("y{}_m", k), space.given_points[k].y);
+        }
+        return design;
+    }
+    const bool rises = target_rises(study);
+    const PartitionFamily family(space, length, width, {rises, !rises});
+    const std::vector<double> p = family.fit_samples(
+        closed_form_curve(study, family.orientation(), [&](double share) { return share * length; }));
+    design.partition = family.curve(p);
+    design.parameters = family.named(p);
+    return design;
+}
+
+Evaluation evaluate_once(const Study& study, const Design& design, Fidelity fidelity, std::uint64_t seed,
+                         const RunOptions& options) {
+    SpreadRunner runner(options);
+    Journal journal(options.journal_folder);
+    switch (fidelity) {
+        case Fidelity::kinematic: {
+            const Evaluation evaluation = KinematicEvaluator(study).evaluate(design, seed);
+            journal.append(evaluation);
+            return evaluation;
+        }
+        case Fidelity::map:
+            return MapEvaluator(study, runner, &journal).evaluate(design, seed);
+        case Fidelity::full:
+            break;
+    }
+    return DemEvaluator(study, runner, &journal).evaluate(design, seed);
+}
+
+}  // namespace gradwright

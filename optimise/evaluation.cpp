@@ -1,0 +1,144 @@
+#include "optimise/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gradwright {
+namespace {
+
+constexpr double kRoundOff = 1e-9;  // bin edges are products of decimal lengths: relative to a bin
+
+/// Mean of the zone weights over [low, high): exact for the piecewise constant weight.
+double mean_weight(const Target& target, double low, double high) {
+    std::vector<double> cuts = {low, high};
+    for (const TargetZone& zone : target.zones)
+        for (const double y : {zone.y_low, zone.y_high})
+            if (y > low && y < high) cuts.push_back(y);
+    std::sort(cuts.begin(), cuts.end());
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+        sum += (cuts[i + 1] - cuts[i]) * target.weight(0.5 * (cuts[i] + cuts[i + 1]));
+    return sum / (high - low);
+}
+
+}  // namespace
+
+const char* to_string(Fidelity fidelity) {
+    switch (fidelity) {
+        case Fidelity::kinematic:
+            return "kinematic";
+        case Fidelity::map:
+            return "map";
+        case Fidelity::full:
+            return "full";
+    }
+    return "unknown";
+}
+
+Footprint footprint_of(const Study& study, const Design& design) {
+    Footprint footprint = study.footprint;
+    const double length = study.scene.platform_length;
+    footprint.x_low = std::clamp(footprint.x_low + design.footprint_offset, 0.0, length);
+    footprint.x_high = std::clamp(footprint.x_high + design.footprint_offset, 0.0, length);
+    footprint.y_low = std::max(footprint.y_low, 0.0);
+    footprint.y_high = std::min(footprint.y_high, study.dispenser_width);
+    return footprint;
+}
+
+std::vector<double> bin_weights(const Study& study) {
+    const double margin = 2 * std::max(study.scene.powder[0].size.volume_quantile(0.9),
+                                       study.scene.powder[1].size.volume_quantile(0.9));
+    const double slack = kRoundOff * study.bins.width;
+    const double low = std::max(study.footprint.y_low, margin) - slack;
+    const double high = std::min(study.footprint.y_high, study.dispenser_width - margin) + slack;
+    std::vector<double> weight(study.bins.count, 0.0);
+    for (int bin = 0; bin < study.bins.count; ++bin) {
+        const double y = study.bins.low(bin);
+        if (y >= low && y + study.bins.width <= high)
+            weight[bin] = mean_weight(study.target, y, y + study.bins.width);
+    }
+    return weight;
+}
+
+std::vector<double> bin_targets(const Study& study) {
+    std::vector<double> target(study.bins.count);
+    for (int bin = 0; bin < study.bins.count; ++bin)
+        target[bin] = study.target.bin_mean(study.bins.low(bin), study.bins.low(bin) + study.bins.width);
+    return target;
+}
+
+void judge(const Study& study, Evaluation& evaluation) {
+    const Objective& objective = study.objective;
+    evaluation.target = bin_targets(study);
+    evaluation.weight = bin_weights(study);
+    evaluation.residuals.clear();
+    evaluation.objective = kNotEvaluable;
+    if (!evaluation.health.ok()) return;
+
+    const std::size_t bins = evaluation.target.size();
+    const auto sized = [bins](std::vector<double>& values, double fill) { values.resize(bins, fill); };
+    sized(evaluation.profile.gi, std::numeric_limits<double>::quiet_NaN());
+    // Unknown noise stays unknown: a verdict on it is "undecided".
+    sized(evaluation.profile.standard_error, std::numeric_limits<double>::quiet_NaN());
+    sized(evaluation.drift.difference, std::numeric_limits<double>::quiet_NaN());
+    sized(evaluation.drift.standard_error, std::numeric_limits<double>::quiet_NaN());
+
+    double weight_sum = 0;
+    int counting = 0, counting_drift = 0, wanted = 0;
+    std::vector<double> drift_weight(bins, 0.0);
+    for (std::size_t b = 0; b < bins; ++b) {
+        if (!(evaluation.weight[b] > 0)) continue;
+        ++wanted;
+        if (std::isfinite(evaluation.profile.gi[b])) {
+            ++counting;
+            weight_sum += evaluation.weight[b];
+        }
+        if (std::isfinite(evaluation.drift.difference[b])) {
+            ++counting_drift;
+            drift_weight[b] = 1;  // physics.md 5: rms over y, unweighted, over the bins that count
+        }
+    }
+    if (counting == 0) {
+        evaluation.health.status = "no_bins";
+        evaluation.health.reason =
+            wanted == 0
+                ? "no bin lies in the footprint outside the side margins of 2 D90: widen the footprint or "
+                  "narrow the bins"
+                : "no counting bin holds a grain: raise the dosage factor or move the footprint";
+        return;
+    }
+
+    evaluation.misfit = misfit(objective.norm, evaluation.profile.gi, evaluation.target, evaluation.weight,
+                               evaluation.profile.standard_error, objective.tolerance);
+    const std::vector<double> no_drift(bins, 0.0);
+    double drift = 0;
+    if (counting_drift > 0) {
+        evaluation.drift_misfit = misfit(Norm::rmse, evaluation.drift.difference, no_drift, drift_weight,
+                                         evaluation.drift.standard_error, objective.x_drift_tolerance);
+        drift = evaluation.drift_misfit.value;
+        // The same bins everywhere: the number beside the misfit is the number the verdict is about.
+        evaluation.drift.value = drift;
+        evaluation.drift.noise_floor = evaluation.drift_misfit.noise_floor;
+    }
+
+    for (std::size_t b = 0; b < bins; ++b)
+        if (evaluation.weight[b] > 0 && std::isfinite(evaluation.profile.gi[b]))
+            evaluation.residuals.push_back(std::sqrt(evaluation.weight[b] / weight_sum) *
+                                           (evaluation.profile.gi[b] - evaluation.target[b]));
+    for (std::size_t b = 0; b < bins; ++b)
+        if (drift_weight[b] > 0)
+            evaluation.residuals.push_back(std::sqrt(objective.x_drift_weight / counting_drift) *
+                                           evaluation.drift.difference[b]);
+
+    const double value = evaluation.misfit.value;
+    // Empty bins leave the norm; they must not become a way to a better objective.
+    const double missing = double(wanted - counting) / wanted;
+    evaluation.objective = std::sqrt(value * value + objective.x_drift_weight * drift * drift) +
+                           objective.waste_weight * evaluation.waste_fraction + missing;
+    // The kinematic picture knows no coverage.
+    if (evaluation.fidelity != Fidelity::kinematic)
+        evaluation.objective += std::max(0.0, objective.min_coverage - evaluation.coverage);
+}
+
+}  // namespace gradwright

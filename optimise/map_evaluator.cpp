@@ -1,0 +1,172 @@
+#include "optimise/map_evaluator.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace gradwright {
+namespace {
+
+constexpr int kResamples = 200;  // bootstrap resamples of a quoted number
+
+}  // namespace
+
+Layer tiled(const Layer& strip, double width) {
+    Layer whole = strip;
+    for (auto* numbers : {&whole.origin_x, &whole.origin_y, &whole.origin_z, &whole.deposit_x,
+                          &whole.deposit_y, &whole.deposit_z, &whole.volume, &whole.radius})
+        numbers->clear();
+    whole.is_a.clear();
+    whole.width = width;
+    whole.periodic = false;  // the curve is continued straight beyond the sides, not wrapped
+    const int copies = int(std::ceil(width / strip.width - 1e-9));
+    for (int copy = 0; copy < copies; ++copy)
+        for (std::size_t i = 0; i < strip.size(); ++i) {
+            const double wrapped =
+                strip.deposit_y[i] - strip.width * std::floor(strip.deposit_y[i] / strip.width);
+            const double y = wrapped + copy * strip.width;
+            if (y >= width) continue;
+            whole.origin_x.push_back(strip.origin_x[i]);
+            whole.origin_y.push_back(y - (strip.deposit_y[i] - strip.origin_y[i]));
+            whole.origin_z.push_back(strip.origin_z[i]);
+            whole.deposit_x.push_back(strip.deposit_x[i]);
+            whole.deposit_y.push_back(y);
+            whole.deposit_z.push_back(strip.deposit_z[i]);
+            whole.volume.push_back(strip.volume[i]);
+            whole.radius.push_back(strip.radius[i]);
+            whole.is_a.push_back(strip.is_a[i]);
+        }
+    return whole;
+}
+
+MapEvaluator::MapEvaluator(const Study& study, SpreadRunner& runner, Journal* journal)
+    : study_(study), runner_(runner), journal_(journal) {}
+
+MapEvaluator::Key MapEvaluator::key_of(const Design& design, std::uint64_t seed) const {
+    return {design.dosage_factor, design.land, design.fill_fraction[0], design.fill_fraction[1],
+            double(seed)};
+}
+
+OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
+    const Key key = key_of(design, seed);
+    const auto found = maps_.find(key);
+    if (found != maps_.end()) return found->second;
+    OriginMap& map = maps_[key];
+    map.health.status = "ok";
+    Design level = design;
+    // Without labels there are no chambers: a level step would follow the partition, so the map takes the
+    // mean level.
+    const double mean_fill = 0.5 * (design.fill_fraction[0] + design.fill_fraction[1]);
+    level.fill_fraction = {mean_fill, mean_fill};
+    for (int i = 0; i < study_.map_spreads; ++i) {
+        const std::uint64_t packing_seed = seed == 0 ? map_seed(study_.seed, i) : seed + 2 * i;
+        const Scene scene = scene_of(study_, level, true, packing_seed);
+        const SpreadResult result =
+            runner_.spread(scene, nullptr, fmt::format("map spread {}", runner_.map_spreads + 1));
+        if (i == 0) {
+            map.scene = scene;
+            map.seed = packing_seed;
+        }
+        map.grains += result.grains;
+        map.steps += result.steps;
+        map.grain_steps += result.grain_steps;
+        map.seconds += result.seconds;
+        map.seconds_cold += result.seconds_cold;
+        map.health.max_overlap_ratio =
+            std::max(map.health.max_overlap_ratio, result.health.max_overlap_ratio);
+        for (const std::string& warning : result.health.warnings) map.health.warnings.push_back(warning);
+        // What never began (stopped, impossible scene) has cost no spread.
+        if (result.health.status != "interrupted" && result.health.status != "invalid") ++runner_.map_spreads;
+        if (!result.health.ok()) {
+            map.health.status = result.health.status;
+            map.health.reason = result.health.reason;
+            break;
+        }
+        map.layers.push_back(result.layer);
+        map.beds.push_back(result.bed);
+        map.state_hash = map.state_hash.empty() ? result.state_hash
+                                                : fmt::format("{}+{}", map.state_hash, result.state_hash);
+    }
+    if (design.fill_fraction[0] != design.fill_fraction[1])
+        map.health.warnings.push_back(
+            "the map was spread with level chambers: unequal fills are only in the confirmation");
+    const double n = double(map.layers.size());
+    for (const Layer& layer : map.layers) {
+        map.capture_fraction += layer.capture_fraction() / n;
+        map.packing_fraction += layer.packing_fraction() / n;
+        map.bed_packing += layer.bed_packing / n;
+        if (layer.dosed_solid_volume > 0)
+            map.waste_fraction += layer.overflow_solid_volume / layer.dosed_solid_volume / n;
+    }
+    // The spread is what costs: kept before anything is made of it.
+    if (journal_ && map.health.status != "interrupted") {
+        journal_->append(with(design, map, false), map.layers);
+        map.told = false;
+    }
+    return map;
+}
+
+Evaluation MapEvaluator::evaluate(const Design& design, std::uint64_t seed) {
+    Evaluation evaluation = with(design, map_of(design, seed), true);
+    if (journal_ && evaluation.health.status != "interrupted") journal_->append(evaluation);
+    return evaluation;
+}
+
+Evaluation MapEvaluator::quick(const Design& design) {
+    return with(design, map_of(design), false);
+}
+
+Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted) {
+    const auto begun = std::chrono::steady_clock::now();
+    Evaluation evaluation;
+    evaluation.design = design;
+    evaluation.fidelity = Fidelity::map;
+    evaluation.seed = map.seed;
+    evaluation.health = map.health;
+    evaluation.grains = map.grains;
+    evaluation.steps = map.steps;
+    evaluation.grain_steps = map.grain_steps;
+    evaluation.state_hash = map.state_hash;
+    evaluation.capture_fraction = map.capture_fraction;
+    evaluation.kinematic_error_bound = 1 - map.capture_fraction;
+    evaluation.packing_fraction = map.packing_fraction;
+    evaluation.waste_fraction = map.waste_fraction;
+    evaluation.supply_ratio = supply_ratio(map.scene, map.bed_packing, map.packing_fraction);
+    if (map.health.ok()) {
+        Footprint footprint = footprint_of(study_, design);
+        HomogeneousOptions options;
+        options.resamples = quoted ? kResamples : 0;
+        options.seed = map.seed;
+        evaluation.profile = homogeneous_profile(map.layers, design.partition, footprint.x_low,
+                                                 footprint.x_high, study_.bins, options);
+        evaluation.drift = homogeneous_drift(map.layers, design.partition, footprint.x_low, footprint.x_high,
+                                             study_.bins, options);
+        Footprint in_strip = footprint;
+        in_strip.y_low = 0;
+        for (const Layer& layer : map.layers) {
+            in_strip.y_high = layer.width;
+            evaluation.coverage += coverage(layer, in_strip) / double(map.layers.size());
+        }
+        if (quoted) {
+            const Layer whole = tiled(map.layers.front(), study_.dispenser_width);
+            const std::vector<double> label = hard_labels(whole, design.partition);
+            const std::vector<double> density = {study_.scene.powder[0].material.density,
+                                                 study_.scene.powder[1].material.density};
+            evaluation.map = gradation_map(whole, label, density, study_.bins.width, study_.dispenser_width);
+            evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
+        }
+    }
+    judge(study_, evaluation);
+    evaluation.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    evaluation.seconds_cold = evaluation.seconds;
+    if (!map.told) {
+        evaluation.spreads = int(map.layers.size());
+        evaluation.seconds += map.seconds;
+        evaluation.seconds_cold += map.seconds_cold;
+        map.told = true;
+    }
+    return evaluation;
+}
+
+}  // namespace gradwright

@@ -1,0 +1,59 @@
+// One spread, every partition: relabelling of an origin map measured on narrow periodic strips
+// (inverse-design.md). The map belongs to the motion variables (dosage factor, land, fills); the partition
+// and the footprint's place only relabel it.
+#pragma once
+#include <array>
+#include <map>
+#include <vector>
+
+#include "optimise/journal.h"
+#include "optimise/spread_runner.h"
+
+namespace gradwright {
+
+/// The spreads without labels behind one set of motion variables.
+struct OriginMap {
+    RunHealth health;  ///< of the first spread that failed, else ok
+    std::vector<Layer> layers;
+    std::vector<BedFacts> beds;
+    Scene scene;  ///< of the first strip
+    std::uint64_t seed = 0;
+    // means over the layers
+    double capture_fraction = 0, packing_fraction = 0, waste_fraction = 0, bed_packing = 0;
+    long grains = 0, steps = 0;
+    double grain_steps = 0, seconds = 0, seconds_cold = 0;
+    std::string state_hash;
+    bool told = false;  ///< its spreads and their time have been handed out with an evaluation
+};
+
+class MapEvaluator : public Evaluator {
+  public:
+    /// study.map_spreads strips are pooled per map. `journal` may be null; new strips are written to it with
+    /// their layers as soon as they lie. All three must outlive the evaluator.
+    MapEvaluator(const Study& study, SpreadRunner& runner, Journal* journal);
+
+    /// Full answer with standard errors, GI map and plain bins. `seed` = first packing seed; 0 = the study's
+    /// map seeds.
+    Evaluation evaluate(const Design& design, std::uint64_t seed) override;
+    Fidelity fidelity() const override { return Fidelity::map; }
+    /// Hard-label misfits and objective only, in milliseconds: for searches.
+    Evaluation quick(const Design& design);
+    /// Runs the strips when these motion variables are new. The reference stays valid.
+    OriginMap& map_of(const Design& design, std::uint64_t seed = 0);
+
+  private:
+    using Key = std::array<double, 5>;
+    Key key_of(const Design& design, std::uint64_t seed) const;
+    Evaluation with(const Design& design, OriginMap& map, bool quoted);
+
+    const Study& study_;
+    SpreadRunner& runner_;
+    Journal* journal_;
+    std::map<Key, OriginMap> maps_;
+};
+
+/// Periodic strip laid side by side until it fills `width`: y-homogeneity as a picture, and for plain bins
+/// [m].
+Layer tiled(const Layer& strip, double width);
+
+}  // namespace gradwright

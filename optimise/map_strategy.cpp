@@ -1,0 +1,329 @@
+// Default strategy (inverse-design.md): spread without labels -> partition on the map -> confirm with
+// labelled full-width spreads on unseen seeds -> correct where the confirmation contradicts the map ->
+// confirm again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "optimise/bounded_search.h"
+#include "optimise/ceres_fit.h"
+#include "optimise/design_run.h"
+#include "optimise/kinematic_evaluator.h"
+#include "optimise/strategy_support.h"
+
+namespace gradwright {
+namespace {
+
+constexpr double kSignificance = 0.05;  // of the equality test that calls for a correction
+constexpr int kReserve =
+    2;  // spreads that a motion search leaves for confirmations, where the budget has them
+
+/// What the confirmations have taught: confirmed - map, smoothed, per bin.
+struct Correction {
+    std::vector<double> profile, drift;
+    std::vector<double> variance, drift_variance;  ///< of those
+    bool active = false;
+};
+
+/// Variance of a smoothed discrepancy: mean of up to three independent bins.
+std::vector<double> smoothed_variance(const std::vector<double>& standard_error,
+                                      const std::vector<double>& weight) {
+    const int bins = int(weight.size());
+    std::vector<double> variance(bins, 0.0);
+    for (int b = 0; b < bins; ++b) {
+        double sum = 0;
+        int n = 0;
+        for (int k = std::max(0, b - 1); k <= std::min(bins - 1, b + 1); ++k)
+            if (weight[k] > 0 && std::isfinite(standard_error[k])) {
+                sum += standard_error[k] * standard_error[k];
+                ++n;
+            }
+        if (n > 0) variance[b] = sum / (n * n);
+    }
+    return variance;
+}
+
+class MapStrategy {
+  public:
+    MapStrategy(const Study& study, const RunOptions& options) : run_(study, options), study_(run_.study) {}
+
+    StudyResult run() {
+        motion_ = start_design(study_);
+        run_.enter("map");
+        search_motion();
+        OriginMap& map = run_.map.map_of(motion_);
+        run_.result.map_layers = map.layers;
+        run_.result.beds = map.beds;
+        for (const std::string& warning : map.health.warnings) run_.result.warnings.push_back(warning);
+        if (!map.health.ok()) {
+            run_.record("map", run_.map.evaluate(motion_, 0), "no origin map");
+            return run_.fail(
+                fmt::format("The map spread ended '{}': {}", map.health.status, map.health.reason));
+        }
+        run_.record("start", run_.map.quick(motion_), "start design on the map");
+
+        run_.enter("fit");
+        if (!place_partition({})) return run_.fail("No partition could be fitted: " + fit_message_);
+        stated_comparisons();
+
+        std::vector<ConfirmedDesign> rounds = {unconfirmed(predicted_)};
+        while (confirm_or_correct(rounds)) {
+        }
+        say_what_limits(rounds);
+        return run_.finish(rounds);
+    }
+
+  private:
+    /// One more spread for the current design, or a corrected design; false when there is nothing left to do.
+    bool confirm_or_correct(std::vector<ConfirmedDesign>& rounds) {
+        ConfirmedDesign& round = rounds.back();
+        if (run_.runner.stopped() || run_.spreads_left() < 1 || round.verdict == Verdict::met) return false;
+        if (!round.confirmations.empty()) {
+            const bool profile_contradicts = round.p_value < kSignificance;
+            const bool drift_contradicts =
+                round.drift_p_value < kSignificance && verdict_of(round.drift_misfit) != Verdict::met;
+            if (study_.design_space.partition_free && (profile_contradicts || drift_contradicts)) {
+                run_.enter("correct");
+                ConfirmedDesign corrected = correct(round, profile_contradicts, drift_contradicts);
+                if (corrected.design.partition.points.empty()) return false;
+                rounds.push_back(std::move(corrected));
+            } else if (round.verdict == Verdict::not_met) {
+                return false;  // map and spread agree that this is the best there is
+            }
+        }
+        run_.enter("confirm");
+        const int before = run_.spreads_left();
+        // A spread that failed for its packing may pass on another seed; one that never began would fail for
+        // ever.
+        return run_.confirm(rounds.back()) || run_.spreads_left() < before;
+    }
+
+    /// Best partition on the map of `motion_`, aimed at target - correction; sets predicted_. False when
+    /// nothing could be fitted.
+    bool place_partition(const Correction& correction) {
+        Design design = motion_;
+        if (study_.design_space.partition_free) {
+            const FitResult fit = best_fit(study_.design_space, correction, {});
+            fit_message_ = fit.message;
+            if (!fit.ok) return false;
+            design = fit.design;
+        }
+        predicted_ = run_.map.evaluate(design, 0);
+        fit_message_ = predicted_.health.reason;
+        run_.record(correction.active ? "correct" : "map", predicted_,
+                    correction.active ? "aimed at the corrected target" : "best partition on the map");
+        return predicted_.health.ok();
+    }
+
+    /// Least squares with the study's drift weight; where misfit or drift then come near their tolerance, the
+    /// weight is tried smaller and larger and the design furthest inside both tolerances is taken: the
+    /// verdict needs both, the weight is only a guess at that.
+    FitResult best_fit(const DesignSpace& space, const Correction& correction, FitOptions options) {
+        options.seed = study_.seed;
+        options.stop = [this] { return run_.runner.stopped(); };
+        FitProblem problem(study_, motion_, run_.map.map_of(motion_).layers);
+        if (correction.active)
+            for (std::size_t b = 0; b < problem.target.size(); ++b) {
+                problem.target[b] -= correction.profile[b];
+                problem.drift_target[b] -= correction.drift[b];
+            }
+        const auto distance = [this](const FitResult& fit) {
+            return std::max(fit.misfit / study_.objective.tolerance,
+                            fit.drift / study_.objective.x_drift_tolerance);
+        };
+        constexpr double kComfortable = 0.7;  // of a tolerance: leaves room for the spread between beds
+        FitResult best = fit_partition(study_, space, motion_, problem, options);
+        if (!best.ok || study_.objective.x_drift_weight <= 0 || distance(best) < kComfortable) return best;
+        options.perturbed_starts = 2;  // the landscape is known by now
+        for (const double factor : {0.25, 4.0}) {
+            problem.x_drift_weight = factor * study_.objective.x_drift_weight;
+            const FitResult other = fit_partition(study_, space, motion_, problem, options);
+            if (other.ok && distance(other) < distance(best)) best = other;
+        }
+        return best;
+    }
+
+    /// Outer search over the variables that need a new spread; leaves the best in motion_, footprint placed.
+    void search_motion() {
+        const DesignSpace& space = study_.design_space;
+        const Variable* variables[2] = {&space.dosage_factor, &space.land};
+        const int reserve = std::min(kReserve, std::max(1, study_.max_spreads - study_.map_spreads));
+        const int points = std::max(1, (study_.max_spreads - reserve) / study_.map_spreads);
+        const bool free = space.dosage_factor.free || space.land.free;
+        if (!free || points == 1) {
+            if (free)
+                run_.result.warnings.push_back(
+                    "dosage factor and land stay at their start: run.max_spreads leaves no spread to search "
+                    "them");
+            place_footprint();
+            return;
+        }
+        const Design start = motion_;
+        Design best = start;
+        double best_objective = kNotEvaluable;
+        BoundedSearch search;
+        for (const Variable* variable : variables) {
+            search.low.push_back(0);
+            search.high.push_back(variable->free ? 1 : 0);
+            const double room = variable->high - variable->low;
+            search.start.push_back(variable->free && room > 0 ? (variable->value - variable->low) / room : 0);
+            search.step.push_back(0.25);
+        }
+        search.budget = points;
+        search.x_tolerance = 0.02;  // of the range: a map cannot tell nearer motions apart
+        search.stop = [&] {
+            return run_.runner.stopped() || run_.spreads_left() - study_.map_spreads < reserve;
+        };
+        const auto objective = [&](const std::vector<double>& x) {
+            motion_ = start;
+            double* numbers[2] = {&motion_.dosage_factor, &motion_.land};
+            for (int i = 0; i < 2; ++i)
+                if (variables[i]->free)
+                    *numbers[i] = variables[i]->low + x[i] * (variables[i]->high - variables[i]->low);
+            place_footprint();
+            const Evaluation evaluation = nested();
+            run_.record(
+                "map", evaluation,
+                fmt::format("dosage factor {:.3g}, land {:.3g} mm, footprint {:+.3g} mm",
+                            motion_.dosage_factor, motion_.land * 1e3, motion_.footprint_offset * 1e3));
+            if (evaluation.objective < best_objective || best_objective >= kNotEvaluable) {
+                best_objective = evaluation.objective;
+                best = motion_;
+            }
+            return evaluation.objective;
+        };
+        const BoundedSearchResult found = minimise(objective, search);
+        run_.result.given_used.emplace_back("motion search",
+                                            fmt::format("{} points, {}", found.evaluations, found.native));
+        motion_ = best;
+    }
+
+    /// The motion's worth: its own best partition, judged on its map with waste and coverage.
+    Evaluation nested() {
+        Design design = motion_;
+        const OriginMap& map = run_.map.map_of(motion_);
+        if (map.health.ok() && study_.design_space.partition_free) {
+            const FitProblem problem(study_, motion_, map.layers);
+            const FitResult fit = fit_partition(study_, study_.design_space, motion_, problem, quick_fit());
+            if (fit.ok) design = fit.design;
+        }
+        return run_.map.quick(design);
+    }
+
+    /// The footprint's place needs no spread: the map is read at another x. Coarse grid, then a finer one
+    /// around its best.
+    void place_footprint() {
+        const Variable& offset = study_.design_space.footprint_offset;
+        if (!offset.free) return;
+        // Kept whole on the platform: a cut footprint would be a smaller part, not a better place.
+        double low = std::max(offset.low, -study_.footprint.x_low);
+        double high = std::min(offset.high, study_.scene.platform_length - study_.footprint.x_high);
+        if (!(high > low) || !run_.map.map_of(motion_).health.ok()) return;
+        constexpr int kGrid = 9;
+        double best_offset = std::clamp(motion_.footprint_offset, low, high), best = kNotEvaluable;
+        for (int pass = 0; pass < 2; ++pass) {
+            const double step = (high - low) / (kGrid - 1);
+            for (int i = 0; i < kGrid; ++i) {
+                motion_.footprint_offset = low + i * step;
+                const double objective = nested().objective;
+                if (objective < best) {
+                    best = objective;
+                    best_offset = motion_.footprint_offset;
+                }
+            }
+            low = std::max(low, best_offset - step);
+            high = std::min(high, best_offset + step);
+        }
+        motion_.footprint_offset = best_offset;
+    }
+
+    FitOptions quick_fit() const {
+        FitOptions options;
+        options.kernels = {50e-6};
+        options.iterations = 20;
+        options.finalists = 1;
+        options.perturbed_starts = 1;
+        options.polish_evaluations = 100;
+        options.seed = study_.seed;
+        return options;
+    }
+
+    /// The best straight partition on the same map, and the kinematic picture of the design found.
+    void stated_comparisons() {
+        DesignSpace straight;
+        straight.family = Family::straight;
+        const FitResult fit = best_fit(straight, {}, {});
+        if (fit.ok) run_.result.straight = run_.map.evaluate(fit.design, 0);
+        KinematicEvaluator kinematic(study_, predicted_.capture_fraction);
+        run_.result.kinematic = kinematic.evaluate(predicted_.design, 0);
+    }
+
+    /// Manifold mapping: aim the map at target - (confirmed - map), so that map + discrepancy meets the
+    /// target.
+    ConfirmedDesign correct(const ConfirmedDesign& round, bool profile, bool drift) {
+        const std::vector<double>& weight = run_.result.weight;
+        if (!correction_.active) {
+            correction_.profile.assign(weight.size(), 0.0);
+            correction_.drift = correction_.variance = correction_.drift_variance = correction_.profile;
+            correction_.active = true;
+        }
+        if (profile) {
+            correction_.profile = smoothed_discrepancy(round.mean.gi, round.predicted.profile.gi, weight);
+            correction_.variance = smoothed_variance(round.mean.standard_error, weight);
+        }
+        if (drift) {
+            correction_.drift =
+                smoothed_discrepancy(round.drift.difference, round.predicted.drift.difference, weight);
+            correction_.drift_variance = smoothed_variance(round.drift.standard_error, weight);
+        }
+        if (!place_partition(correction_)) return {};
+        ConfirmedDesign corrected = unconfirmed(predicted_);
+        for (std::size_t b = 0; b < weight.size(); ++b) {
+            corrected.expected[b] += correction_.profile[b];
+            corrected.expected_variance[b] += correction_.variance[b];
+            corrected.expected_drift[b] += correction_.drift[b];
+            corrected.expected_drift_variance[b] += correction_.drift_variance[b];
+        }
+        return corrected;
+    }
+
+    void say_what_limits(const std::vector<ConfirmedDesign>& rounds) {
+        const Misfit &misfit = rounds.front().predicted.misfit,
+                     &drift = rounds.front().predicted.drift_misfit;
+        std::string& limit = run_.limit;
+        limit = fmt::format(
+            "The best that the map offers is misfit {:.3f} (noise floor {:.3f}) and x drift {:.3f} (noise "
+            "floor {:.3f})",
+            misfit.value, misfit.noise_floor, drift.value, drift.noise_floor);
+        const DesignSpace& space = study_.design_space;
+        const bool motion_free = space.dosage_factor.free || space.land.free || space.footprint_offset.free;
+        if (misfit.debiased > misfit.tolerance || drift.debiased > drift.tolerance)
+            limit +=
+                motion_free
+                    ? ": this motion range limits it; widen land, dosage_factor or footprint, or add knots."
+                    : ": the transport limits it; free land, dosage_factor or footprint_offset, or add "
+                      "knots.";
+        else if (rounds.size() > 1)
+            limit +=
+                ": the spreads with both powders differ from the map, and run.max_spreads ended the "
+                "corrections.";
+        else
+            limit += ": the spread between beds limits it.";
+    }
+
+    StrategyRun run_;
+    const Study& study_;
+    Design motion_;         ///< motion variables in force; its partition is the start's
+    Evaluation predicted_;  ///< of the design in force, on the map
+    Correction correction_;
+    std::string fit_message_;
+};
+
+}  // namespace
+
+StudyResult run_map_strategy(const Study& study, const RunOptions& options) {
+    return MapStrategy(study, options).run();
+}
+
+}  // namespace gradwright

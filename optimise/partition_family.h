@@ -1,0 +1,110 @@
+// Partition families: parameter vector <-> curve in the dispenser (inverse-design.md, Variables).
+//
+//   straight  p = (angle [rad], offset / W): line at `angle` from +x through the dispenser's centre moved by
+//   the offset in y. polyline  K knots, x_0 = 0, x_{K-1} = L_d. Interior knots x_k = (k + s_k) L_d / (K - 1)
+//   with |s_k| <= 0.45, and never so far that
+//             two knots come nearer than the minimum segment: the order holds by construction.
+//             free:     p = (y_0/W .. y_{K-1}/W, s_1 .. s_{K-2})
+//             monotone: p = (y_0/W, f_1 .. f_{K-1}, s_1 .. s_{K-2}), 0 <= f_k <= 1: knot k goes the share f_k
+//             of the way that is
+//                       left to the bound, y_k = y_{k-1} + f_k (bound - y_{k-1}). A box in p is then exactly
+//                       "monotone and within the bounds"; increments y_k - y_{k-1} >= 0 would need a sum
+//                       constraint, which bounded least squares has not.
+//
+// Parameters have no unit and span about one, so that one trust region suits all. Bounds come from the
+// dispenser: y within
+// [-0.5 W, 1.5 W], because a curve may leave through the side walls. The two orientations are part of the
+// family's shape, not of p:
+//   a_above   A is powder at larger y (curve runs in +x). false: the mirrored curve, running in -x, for
+//   targets that fall along y. rising    direction of a monotone polyline: y grows (true) or falls (false)
+//   with x. Linear 0 -> 1 ramp: falls.
+#pragma once
+#include <cmath>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "optimise/study.h"
+
+namespace gradwright {
+
+struct Orientation {
+    bool a_above = true;
+    bool rising = false;
+};
+
+class PartitionFamily {
+  public:
+    /// `length`, `width` of the dispenser [m] > 0. Throws std::invalid_argument when the minimum segment
+    /// leaves no room for the knots.
+    PartitionFamily(const DesignSpace& space, double length, double width, Orientation orientation);
+
+    std::size_t size() const { return low_.size(); }
+    int knots() const { return family_ == Family::straight ? 2 : knots_; }
+    const std::vector<double>& low() const { return low_; }
+    const std::vector<double>& high() const { return high_; }
+    Family family() const { return family_; }
+    Orientation orientation() const { return orientation_; }
+
+    /// Knots [m] with x rising from 0 to L_d; T = double or ceres::Jet.
+    template <class T>
+    void knots_of(const T* p, std::vector<T>& x, std::vector<T>& y) const;
+    /// Curve with A on the side asked for.
+    PartitionCurve curve(std::span<const double> p) const;
+    /// Nearest parameters, in the least squares sense, to the curve y(x) given as samples with x rising [m];
+    /// within the bounds.
+    std::vector<double> fit_samples(std::span<const PlanPoint> samples) const;
+    /// Clips p to the bounds: optimisers leave them by round-off.
+    void clip(std::span<double> p) const;
+    /// The design's numbers for people: straight: angle [deg], offset [m]; polyline: x_k, y_k [m]. A mirrored
+    /// curve says so.
+    std::vector<std::pair<std::string, double>> named(std::span<const double> p) const;
+
+  private:
+    Family family_;
+    int knots_;
+    bool monotone_;
+    double length_, width_, y_low_, y_high_;
+    Orientation orientation_;
+    std::vector<double> low_, high_;
+};
+
+template <class T>
+void PartitionFamily::knots_of(const T* p, std::vector<T>& x, std::vector<T>& y) const {
+    x.clear();
+    y.clear();
+    if (family_ == Family::straight) {
+        using std::tan;
+        const T rise = tan(p[0]) * (0.5 * length_);
+        const T middle = 0.5 * width_ + p[1] * width_;
+        x = {T(0.0), T(length_)};
+        y = {middle - rise, middle + rise};
+        return;
+    }
+    const double spacing = length_ / (knots_ - 1);
+    for (int k = 0; k < knots_; ++k) {
+        const bool interior = k > 0 && k < knots_ - 1;
+        x.push_back(interior ? (p[knots_ + k - 1] + double(k)) * spacing : T(k * spacing));
+        if (k == 0 || !monotone_) {
+            y.push_back(p[k] * width_);
+        } else {
+            const double bound = orientation_.rising ? y_high_ : y_low_;
+            y.push_back(y.back() + p[k] * (bound - y.back()));
+        }
+    }
+}
+
+/// Does the target rise along y over the bins that count? Decides on which side A stands. Flat targets count
+/// as rising.
+bool target_rises(const Study& study);
+
+/// The curve in closed form (inverse-design.md): with W the volume-weighted distribution of origin_x, x_p(y)
+/// = W^-1(1 - g(y)) with A on the platform side, x_p(y) = W^-1(g(y)) with A on the dispenser's back side (the
+/// opposite slope). Given as y_p(x), samples at equal steps of W, so that a plateau of g, which every y at
+/// the end of the curve would satisfy, weighs nothing. `quantile` = W^-1 [m] (fully mixed dispenser: share *
+/// L_d). Shares that g never reaches let the curve leave through the side, at -0.5 W or 1.5 W.
+std::vector<PlanPoint> closed_form_curve(const Study& study, Orientation orientation,
+                                         const std::function<double(double share)>& quantile);
+
+}  // namespace gradwright

@@ -1,0 +1,220 @@
+#include "optimise/strategy_support.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+namespace gradwright {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point begun) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+const char* instruction_set() {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) return "avx512f";
+    if (__builtin_cpu_supports("avx2")) return "avx2";
+    return "x86-64";
+#else
+    return "generic";
+#endif
+}
+
+/// A map must leave at least one spread for the confirmation, where the budget has two.
+Study within_budget(Study study) {
+    study.map_spreads = std::clamp(study.map_spreads, 1, std::max(1, study.max_spreads - 1));
+    return study;
+}
+
+std::string with_interval(const Misfit& misfit) {
+    return fmt::format("{:.3f} (95 % bounds {:.3f} and {:.3f}, noise floor {:.3f}, tolerance {:.3g})",
+                       misfit.value, misfit.interval_low, misfit.interval_high, misfit.noise_floor,
+                       misfit.tolerance);
+}
+
+}  // namespace
+
+StrategyRun::StrategyRun(const Study& given, const RunOptions& options)
+    : study(within_budget(given)),
+      runner(options),
+      journal(options.journal_folder),
+      map(study, runner, &journal),
+      full(study, runner, &journal),
+      begun_(std::chrono::steady_clock::now()),
+      stage_begun_(begun_) {
+    result.seed = study.seed;
+    result.warnings = study.warnings;
+    result.target = bin_targets(study);
+    result.weight = bin_weights(study);
+    result.threads = options.threads > 0 ? options.threads : omp_get_max_threads();
+    result.host_cores = int(std::thread::hardware_concurrency());
+    result.host_isa = instruction_set();
+    result.given_used.emplace_back("threads", fmt::format("{} -> {}", options.threads, result.threads));
+    result.given_used.emplace_back("run.map_spreads",
+                                   fmt::format("{} -> {}", given.map_spreads, study.map_spreads));
+}
+
+void StrategyRun::enter(const std::string& stage) {
+    if (!stage_.empty()) result.stage_seconds[stage_] += seconds_since(stage_begun_);
+    stage_begun_ = std::chrono::steady_clock::now();
+    stage_ = stage;
+    if (!stage.empty() && runner.options().progress) runner.options().progress(stage, 0);
+}
+
+void StrategyRun::record(const std::string& stage, const Evaluation& evaluation, const std::string& note) {
+    HistoryEntry entry;
+    entry.iteration = int(result.history.size());
+    entry.stage = stage;
+    entry.fidelity = evaluation.fidelity;
+    entry.objective = evaluation.objective;
+    entry.misfit = evaluation.misfit.value;
+    entry.drift = evaluation.drift_misfit.value;
+    entry.spreads = runner.map_spreads + runner.full_spreads;
+    entry.seconds = seconds_since(begun_);
+    entry.design = evaluation.design;
+    entry.note = evaluation.health.ok()
+                     ? note
+                     : fmt::format("{}: {}: {}", note, evaluation.health.status, evaluation.health.reason);
+    result.history.push_back(std::move(entry));
+}
+
+bool StrategyRun::confirm(ConfirmedDesign& round) {
+    const std::uint64_t seed = confirmation_seed(study.seed, confirmations_++);
+    const Evaluation evaluation = full.evaluate(round.design, seed);
+    record("confirm", evaluation, fmt::format("packing seed {}", seed));
+    for (const std::string& warning : evaluation.health.warnings)
+        if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end())
+            result.warnings.push_back(warning);
+    if (!evaluation.health.ok()) {
+        last_failure_ = fmt::format("{}: {}", evaluation.health.status, evaluation.health.reason);
+        return false;
+    }
+    if (result.snapshots.empty()) result.snapshots = full.last().snapshots;
+    result.beds.push_back(full.last().bed);
+    round.confirmations.push_back(evaluation);
+    summarise(study, round);
+    return true;
+}
+
+void StrategyRun::confirm_until_decided(ConfirmedDesign& round) {
+    enter("confirm");
+    while (round.verdict == Verdict::undecided && spreads_left() > 0 && !runner.stopped()) {
+        const int before = spreads_left();
+        // A spread that fails for its packing may pass on another seed; one that never began will not.
+        if (!confirm(round) && spreads_left() == before) return;
+    }
+}
+
+void StrategyRun::close() {
+    enter("");
+    result.spreads_map = runner.map_spreads;
+    result.spreads_full = runner.full_spreads;
+    result.given_used.emplace_back("run.max_spreads", fmt::format("{} -> {}", study.max_spreads,
+                                                                  runner.map_spreads + runner.full_spreads));
+    result.seconds = seconds_since(begun_);
+    result.seconds_cold = result.seconds + runner.seconds_saved;
+}
+
+StudyResult StrategyRun::fail(const std::string& reason) {
+    close();
+    result.termination = runner.stopped() ? "interrupted" : "failed";
+    result.message = reason;
+    result.verdict = Verdict::undecided;
+    return std::move(result);
+}
+
+StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
+    const auto best = std::max_element(rounds.begin(), rounds.end(),
+                                       [](const auto& a, const auto& b) { return better(b, a); });
+    const ConfirmedDesign& round = *best;
+    close();
+    result.design = round.design;
+    result.predicted = round.predicted;
+    result.confirmations = round.confirmations;
+    result.confirmed = round.mean;
+    result.confirmed_drift = round.drift;
+    result.misfit = round.misfit;
+    result.drift_misfit = round.drift_misfit;
+    result.verdict = round.verdict;
+
+    // Sums of the confirmations where there are any, else of the prediction.
+    const std::vector<Evaluation> predicted_only = {round.predicted};
+    const std::vector<Evaluation>& sources =
+        round.confirmations.empty() ? predicted_only : round.confirmations;
+    for (const Evaluation& source : sources) {
+        const double n = double(sources.size());
+        result.capture_fraction += source.capture_fraction / n;
+        result.supply_ratio += source.supply_ratio / n;
+        result.coverage += source.coverage / n;
+        result.waste_fraction += source.waste_fraction / n;
+        result.packing_fraction += source.packing_fraction / n;
+        result.waste_a_share += source.waste_a_share / n;
+    }
+    if (!round.confirmations.empty() && result.coverage < study.objective.min_coverage)
+        result.warnings.push_back(
+            fmt::format("coverage {:.3f} is below objective.min_coverage {:.3f}: raise the dosage factor",
+                        result.coverage, study.objective.min_coverage));
+
+    if (round.confirmations.empty()) {
+        result.misfit.tolerance = study.objective.tolerance;
+        result.misfit.norm = study.objective.norm;
+        result.drift_misfit.tolerance = study.objective.x_drift_tolerance;
+        const bool failed = !runner.stopped() && !last_failure_.empty();
+        result.termination = runner.stopped() ? "interrupted" : failed ? "failed" : "budget";
+        result.message =
+            failed ? "No confirmation could be spread: " + last_failure_
+                   : fmt::format("Not confirmed: {}; the numbers are predictions.",
+                                 runner.stopped() ? "interrupted" : "no spread was left in run.max_spreads");
+        return std::move(result);
+    }
+
+    std::vector<double> counting = round.mean.standard_error;
+    for (std::size_t b = 0; b < counting.size(); ++b)
+        if (!(result.weight[b] > 0))
+            counting[b] = 0;  // the band holds over the bins that the verdict is about
+    const double factor = simultaneous_factor(counting);
+    for (std::size_t b = 0; b < round.mean.gi.size(); ++b) {
+        const double half = factor * round.mean.standard_error[b];
+        // NaN in an empty bin stays NaN: std::clamp would do so too, but only by the order of its arguments
+        const bool defined = std::isfinite(round.mean.gi[b]) && std::isfinite(half);
+        result.band_low.push_back(defined ? std::max(0.0, round.mean.gi[b] - half)
+                                          : std::numeric_limits<double>::quiet_NaN());
+        result.band_high.push_back(defined ? std::min(1.0, round.mean.gi[b] + half)
+                                           : std::numeric_limits<double>::quiet_NaN());
+    }
+
+    const std::string numbers =
+        fmt::format("misfit {}, x drift {}, on {} unseen bed{}", with_interval(round.misfit),
+                    with_interval(round.drift_misfit), round.confirmations.size(),
+                    round.confirmations.size() == 1 ? "" : "s");
+    const bool drift_decides =
+        verdict_of(round.drift_misfit) == round.verdict && verdict_of(round.misfit) != round.verdict;
+    if (round.verdict == Verdict::met) {
+        result.message = "Target met: " + numbers + ".";
+    } else if (round.verdict == Verdict::not_met) {
+        result.message =
+            fmt::format("Target not met by its {}: {}.", drift_decides ? "x drift" : "profile", numbers);
+    } else {
+        const Misfit& open =
+            verdict_of(round.misfit) == Verdict::undecided ? round.misfit : round.drift_misfit;
+        result.message = fmt::format(
+            "Undecided: {}. {}", numbers,
+            open.noise_floor > open.tolerance
+                ? "The noise floor lies above the tolerance: raise run.max_spreads or widen the tolerance."
+                : "The tolerance lies inside the interval: raise run.max_spreads for more beds.");
+    }
+    if (round.verdict != Verdict::met && !limit.empty()) result.message += " " + limit;
+    result.termination = runner.stopped()                      ? "interrupted"
+                         : round.verdict == Verdict::undecided ? "budget"
+                         : round.verdict == Verdict::met       ? "converged"
+                         : spreads_left() > 0                  ? "converged"
+                                                               : "budget";
+    return std::move(result);
+}
+
+}  // namespace gradwright

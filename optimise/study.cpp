@@ -1,0 +1,28 @@
+// From the question and one point of the design space to the scene of one spread (physics.md 1).
+#include "optimise/study.h"
+
+namespace gradwright {
+
+Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64_t seed) {
+    Scene scene = study.scene;
+    scene.width = strip ? study.strip_width : study.dispenser_width;
+    // A map lives on y-homogeneity: no side walls, whatever the machine has.
+    if (strip) scene.sides = Sides::periodic;
+    scene.land = design.land > 0 ? design.land : study.scene.land;
+    // Dispenser and platform are equally wide, so the ratio of areas is that of the lengths (physics.md 1.3).
+    scene.dose_height =
+        design.dosage_factor * scene.layer_thickness * scene.platform_length / scene.dispenser_length;
+    // Fill fraction phi leaves a headspace c = (1 - phi) depth below the rim, levelled away after the first
+    // pass.
+    for (int chamber = 0; chamber < 2; ++chamber)
+        scene.headspace[chamber] = (1 - design.fill_fraction[chamber]) * scene.dispenser_depth;
+    scene.seed = seed;
+    return scene;
+}
+
+double supply_ratio(const Scene& scene, double bed_packing, double layer_packing) {
+    const double needed = scene.gap * layer_packing * scene.platform_length;
+    return needed > 0 ? scene.dose_height * bed_packing * scene.dispenser_length / needed : 0;
+}
+
+}  // namespace gradwright

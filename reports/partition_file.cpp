@@ -1,0 +1,101 @@
+#include "reports/partition_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/json_support.h"
+#include "reports/result_json.h"
+#include "reports/wording.h"
+
+namespace gradwright {
+namespace {
+
+using nlohmann::json;
+
+/// Wall on which an end of the partition lies and the way along that wall from the datum corner.
+json end_offset(const PartitionRow& row, double length_mm, double width_mm) {
+    const double tolerance = 1e-6;  // [mm]
+    const char* wall = "none";
+    double offset = std::nan("");
+    if (std::abs(row.x_mm) < tolerance) {
+        wall = "rear (x = 0)";
+        offset = row.y_mm;
+    } else if (std::abs(row.x_mm - length_mm) < tolerance) {
+        wall = "platform side (x = length)";
+        offset = row.y_mm;
+    } else if (std::abs(row.y_mm) < tolerance) {
+        wall = "side y = 0";
+        offset = row.x_mm;
+    } else if (std::abs(row.y_mm - width_mm) < tolerance) {
+        wall = "side y = width";
+        offset = row.x_mm;
+    }
+    return {{"wall", wall}, {"offset_m", number(offset * 1e-3)}, {"offset_mm", number(offset)}};
+}
+
+json powder_json(const Powder& powder) {
+    return {{"material", powder.material.name},
+            {"density_kg_m3", number(powder.material.density)},
+            {"d10_m", number(powder.size.d10)},
+            {"d50_m", number(powder.size.d50)},
+            {"d90_m", number(powder.size.d90)},
+            {"cut_m", {number(powder.size.cut_low), number(powder.size.cut_high)}}};
+}
+
+}  // namespace
+
+json partition_json(const Study& study, const StudyResult& result) {
+    const double length = study.scene.dispenser_length, width = study.dispenser_width;
+    const auto rows = partition_rows(study, result.design);
+    json corners = json::array(), points_m = json::array(), points_mm = json::array();
+    for (const PartitionRow& row : rows) {
+        corners.push_back({{"name", fmt::format("P{}", row.number)},
+                           {"x_mm", number(row.x_mm)},
+                           {"y_mm", number(row.y_mm)},
+                           {"segment_length_mm", number(row.length_mm)},
+                           {"segment_angle_deg", number(row.angle_deg)}});
+        points_m.push_back({number(row.x_mm * 1e-3), number(row.y_mm * 1e-3)});
+        points_mm.push_back({number(row.x_mm), number(row.y_mm)});
+    }
+    const bool inside = rows.size() >= 2;
+    const double area_a = inside ? result.design.partition.area_a(length, width) : std::nan("");
+    const Scene scene = scene_of(study, result.design, false, result.seed);
+    json object = {
+        {"format", "gradwright-partition-1"},
+        {"study", study.name},
+        {"machine", study.machine_name},
+        {"verdict", to_string(result.verdict)},
+        {"frame", "x = spreading direction from the dispenser's rear wall, y = across from its y = 0 side"},
+        {"dispenser",
+         {{"length_m", number(length)},
+          {"width_m", number(width)},
+          {"depth_m", number(study.scene.dispenser_depth)},
+          {"length_mm", number(length * 1e3)},
+          {"width_mm", number(width * 1e3)},
+          {"depth_mm", number(study.scene.dispenser_depth * 1e3)}}},
+        {"points_m", points_m},
+        {"points_mm", points_mm},
+        {"corners", corners},
+        {"ends", inside ? json({{"first", end_offset(rows.front(), length * 1e3, width * 1e3)},
+                                {"last", end_offset(rows.back(), length * 1e3, width * 1e3)}})
+                        : json(nullptr)},
+        {"sides",
+         {{"A",
+           {{"where", "left of the directed curve P1, P2, ..."},
+            {"area_m2", number(area_a)},
+            {"powder", powder_json(scene.powder[0])}}},
+          {"B",
+           {{"where", "right of the directed curve P1, P2, ..."},
+            {"area_m2", number(length * width - area_a)},
+            {"powder", powder_json(scene.powder[1])}}}}},
+        {"plate_thickness_m", number(scene.plate_thickness)},
+        {"dose_height_m", number(scene.dose_height)},
+        {"headspace_m", {{"A", number(scene.headspace[0])}, {"B", number(scene.headspace[1])}}},
+    };
+    object.update(design_json(
+        study, result.design));  // partition{family, parameters, ...}, fill_fraction, dosage_factor, land_m
+    return object;
+}
+
+}  // namespace gradwright

@@ -1,0 +1,18 @@
+// Everything the report shows, as one JSON object: the page holds it in one block, OUT/report_data.json holds
+// it for `report OUT`.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "optimise/study.h"
+#include "optimise/study_result.h"
+
+namespace gradwright {
+
+/// {format, result (as result.json), words, build, plan, map, origin, pictures, speed, command, study_text}.
+/// Lengths in m unless the name says mm; undefined = null. `files`: what lies beside the report.
+nlohmann::json report_data(const Study& study, const StudyResult& result,
+                           const std::vector<std::string>& files = {});
+
+}  // namespace gradwright

@@ -1,0 +1,303 @@
+#include "reports/result_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reports/json_support.h"
+#include "reports/provenance.h"
+#include "reports/wording.h"
+
+namespace gradwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+double at(const std::vector<double>& values, std::size_t index) {
+    return index < values.size() ? values[index] : kUndefined;
+}
+
+/// All numbers null: an evaluation that gave none must not look like a perfect one.
+json undefined_misfit(const Misfit& misfit) {
+    json object = misfit_json(misfit);
+    for (const char* key : {"value", "debiased", "noise_floor"}) object[key] = nullptr;
+    object["interval"] = {nullptr, nullptr};
+    return object;
+}
+
+/// [y][x] from a row-major vector.
+json grid(const std::vector<double>& values, std::size_t columns) {
+    json rows = json::array();
+    for (std::size_t start = 0; columns > 0 && start + columns <= values.size(); start += columns)
+        rows.push_back(numbers(std::span(values).subspan(start, columns)));
+    return rows;
+}
+
+json drift_profile_json(const XDrift& drift) {
+    return {{"difference", numbers(drift.difference)}, {"standard_error", numbers(drift.standard_error)}};
+}
+
+json evaluation_summary(const Study& study, const Evaluation& evaluation) {
+    const bool defined = evaluation.health.ok() && !evaluation.profile.gi.empty();
+    return {{"fidelity", to_string(evaluation.fidelity)},
+            {"status", evaluation.health.status},
+            {"reason", evaluation.health.reason},
+            {"seed", evaluation.seed},
+            {"design", design_json(study, evaluation.design)},
+            {"misfit", defined ? misfit_json(evaluation.misfit) : undefined_misfit(evaluation.misfit)},
+            {"x_drift",
+             defined ? misfit_json(evaluation.drift_misfit) : undefined_misfit(evaluation.drift_misfit)},
+            {"y_m", numbers(evaluation.profile.y_m)},
+            {"gi", numbers(evaluation.profile.gi)},
+            {"standard_error", numbers(evaluation.profile.standard_error)},
+            {"capture_fraction", number(evaluation.capture_fraction)},
+            {"supply_ratio", number(evaluation.supply_ratio)},
+            {"coverage", number(evaluation.coverage)},
+            {"waste_fraction", number(evaluation.waste_fraction)},
+            {"packing_fraction", number(evaluation.packing_fraction)},
+            {"grains", evaluation.grains},
+            {"steps", evaluation.steps},
+            {"grain_steps", number(evaluation.grain_steps)},
+            {"seconds", number(evaluation.seconds)},
+            {"seconds_cold", number(evaluation.seconds_cold)},
+            {"state_hash", evaluation.state_hash}};
+}
+
+json history_json(const StudyResult& result) {
+    auto rows = json::array();
+    for (const HistoryEntry& entry : result.history)
+        rows.push_back({{"iteration", entry.iteration},
+                        {"stage", entry.stage},
+                        {"fidelity", to_string(entry.fidelity)},
+                        {"objective", number(entry.objective)},
+                        {"misfit", number(entry.misfit)},
+                        {"x_drift", number(entry.drift)},
+                        {"spreads", entry.spreads},
+                        {"seconds", number(entry.seconds)},
+                        {"points_m", plan_points(entry.design.partition.points)},
+                        {"note", entry.note}});
+    return rows;
+}
+
+/// Target, predicted, confirmed on one axis. A bin that is undefined in target or confirmed is null in both,
+/// so that a script that skips nulls compares the same bins whichever it looks at.
+json profile_json(const StudyResult& result) {
+    const bool proved = !result.confirmed.gi.empty();
+    const auto& y = proved ? result.confirmed.y_m : result.predicted.profile.y_m;
+    json target = json::array(), predicted = json::array(), confirmed = json::array();
+    json low = json::array(), high = json::array(), error = json::array(), weight = json::array();
+    for (std::size_t b = 0; b < y.size(); ++b) {
+        const double asked = at(result.target, b), found = at(result.confirmed.gi, b);
+        const bool defined = std::isfinite(asked) && (!proved || std::isfinite(found));
+        target.push_back(number(defined ? asked : kUndefined));
+        predicted.push_back(number(at(result.predicted.profile.gi, b)));
+        confirmed.push_back(number(defined ? found : kUndefined));
+        low.push_back(number(defined ? at(result.band_low, b) : kUndefined));
+        high.push_back(number(defined ? at(result.band_high, b) : kUndefined));
+        error.push_back(number(defined ? at(result.confirmed.standard_error, b) : kUndefined));
+        weight.push_back(number(at(result.weight, b)));
+    }
+    return {{"y_m", numbers(y)},
+            {"target", target},
+            {"predicted", predicted},
+            {"confirmed", confirmed},
+            {"band_low", low},
+            {"band_high", high},
+            {"standard_error", error},
+            {"weight", weight},
+            {"predicted_standard_error", numbers(result.predicted.profile.standard_error)},
+            {"band", "simultaneous 95 % over the bins"}};
+}
+
+json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
+    auto rows = json::array();
+    for (const auto& [key, value] : pairs) rows.push_back({{"option", key}, {"given_used", value}});
+    return rows;
+}
+
+json beds_json(const StudyResult& result) {
+    auto rows = json::array();
+    for (const BedFacts& bed : result.beds)
+        rows.push_back({{"packing_fraction", number(bed.packing_fraction)},
+                        {"mean_coordination", number(bed.mean_coordination)},
+                        {"max_overlap_ratio", number(bed.max_overlap_ratio)},
+                        {"speed_number", number(bed.speed_number)},
+                        {"carried_weight_ratio", number(bed.carried_weight_ratio)},
+                        {"steps", bed.steps},
+                        {"from_cache", bed.from_cache},
+                        {"made_d10_d50_d90_m", numbers(bed.made_d10_d50_d90)},
+                        {"seconds", number(bed.seconds)},
+                        {"seconds_cold", number(bed.seconds_cold)}});
+    return rows;
+}
+
+}  // namespace
+
+double simultaneous_quantile(int bins) {
+    const double tail = 0.025 / std::max(1, bins);
+    double low = 0, high = 12;  // Phi(-12) = 2e-33: no number of bins comes near
+    for (int i = 0; i < 80; ++i) {
+        const double middle = (low + high) / 2;
+        (0.5 * std::erfc(middle / std::sqrt(2.0)) > tail ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
+
+json misfit_json(const Misfit& misfit) {
+    return {{"norm", to_string(misfit.norm)},
+            {"value", number(misfit.value)},
+            {"debiased", number(misfit.debiased)},
+            {"interval", {number(misfit.interval_low), number(misfit.interval_high)}},
+            {"noise_floor", number(misfit.noise_floor)},
+            {"tolerance", number(misfit.tolerance)}};
+}
+
+json design_json(const Study& study, const Design& design) {
+    json parameters = json::object();
+    for (const auto& [name, value] : design.parameters) parameters[name] = number(value);
+    json partition = {{"family", design.family == Family::straight ? "straight" : "polyline"},
+                      {"parameters", parameters},
+                      {"points_m", plan_points(design.partition.points)},
+                      {"points_in_dispenser_m", json::array()}};
+    if (design.partition.points.size() >= 2)
+        partition["points_in_dispenser_m"] =
+            plan_points(design.partition.clipped(study.scene.dispenser_length, study.dispenser_width));
+    return {
+        {"partition", partition},
+        {"fill_fraction", {{"A", number(design.fill_fraction[0])}, {"B", number(design.fill_fraction[1])}}},
+        {"dosage_factor", number(design.dosage_factor)},
+        {"land_m", number(design.land)},
+        {"footprint_offset_m", number(design.footprint_offset)}};
+}
+
+json inputs_json(const Study& study) {
+    auto rows = json::array();
+    for (const InputEntry& input : study.inputs)
+        rows.push_back({{"key", input.key},
+                        {"value", input.value},
+                        {"unit", input.unit},
+                        {"origin", input.origin},
+                        {"note", input.note}});
+    return rows;
+}
+
+json to_json(const Study& study, const StudyResult& result, const std::vector<std::string>& files) {
+    const Wording words = wording(study, result);
+    const bool proved = !result.confirmed.gi.empty();
+    json drift = misfit_json(result.drift_misfit);
+    drift["value"] = number(proved ? result.confirmed_drift.value : result.predicted.drift.value);
+    drift["noise_floor"] =
+        number(proved ? result.confirmed_drift.noise_floor : result.predicted.drift.noise_floor);
+    drift["tolerance"] = number(study.objective.x_drift_tolerance);
+    drift["profile"] = drift_profile_json(proved ? result.confirmed_drift : result.predicted.drift);
+    drift["of"] = proved ? "confirmed" : "predicted";
+    const bool measured = proved || !result.predicted.profile.gi.empty();
+    if (!measured) {
+        drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
+        drift["interval"] = {nullptr, nullptr};
+    }
+    const auto found = [&](double value) { return measured ? number(value) : json(nullptr); };
+    json misfit = measured ? misfit_json(result.misfit) : undefined_misfit(result.misfit);
+    misfit["of"] = drift["of"];
+    misfit["tolerance"] = number(study.objective.tolerance);
+    json confirmations = json::array();
+    for (const Evaluation& evaluation : result.confirmations)
+        confirmations.push_back(evaluation_summary(study, evaluation));
+    json stages = json::object();
+    for (const auto& [stage, seconds] : result.stage_seconds) stages[stage] = number(seconds);
+    json provenance = provenance_json();
+    provenance["host"] = {
+        {"isa", result.host_isa}, {"cores", result.host_cores}, {"threads", result.threads}};
+    const bool failed = result.termination == "failed" || result.termination == "not_run";
+    return {{"study", study.name},
+            {"study_file", study.file},
+            {"machine", study.machine_name},
+            {"target", study.target.describe()},
+            {"termination", result.termination},
+            {"message", result.message},
+            {"verdict", to_string(result.verdict)},
+            {"target_met", result.verdict == Verdict::met && !failed},
+            {"verdict_text", words.verdict},
+            {"misfit", misfit},
+            {"x_drift", drift},
+            {"capture_fraction", found(result.capture_fraction)},
+            {"supply_ratio", found(result.supply_ratio)},
+            {"design", design_json(study, result.design)},
+            {"profile", profile_json(result)},
+            {"coverage", found(result.coverage)},
+            {"waste_fraction", found(result.waste_fraction)},
+            {"waste_a_share", found(result.waste_a_share)},
+            {"packing_fraction", found(result.packing_fraction)},
+            {"spreads", {{"map", result.spreads_map}, {"full", result.spreads_full}}},
+            {"predicted", evaluation_summary(study, result.predicted)},
+            {"confirmations", confirmations},
+            {"straight", result.straight ? evaluation_summary(study, *result.straight) : json(nullptr)},
+            {"kinematic", result.kinematic ? evaluation_summary(study, *result.kinematic) : json(nullptr)},
+            {"beds", beds_json(result)},
+            {"history", history_json(result)},
+            {"given_used", pairs_json(result.given_used)},
+            {"reductions", study.reductions},
+            {"inputs", inputs_json(study)},
+            {"warnings", words.warnings},
+            {"stage_seconds", stages},
+            {"seconds", number(result.seconds)},
+            {"seconds_cold", number(result.seconds_cold)},
+            {"seed", result.seed},
+            {"provenance", provenance},
+            {"files", files}};
+}
+
+json evaluation_json(const Study& study, const Evaluation& evaluation,
+                     const std::vector<std::string>& files) {
+    const GradationProfile& profile = evaluation.profile;
+    const int defined = static_cast<int>(
+        std::count_if(profile.gi.begin(), profile.gi.end(), [](double gi) { return std::isfinite(gi); }));
+    const double z = simultaneous_quantile(defined);
+    json low = json::array(), high = json::array(), target = json::array();
+    for (std::size_t b = 0; b < profile.gi.size(); ++b) {
+        const double error = at(profile.standard_error, b);
+        // clamping must not turn an undefined error into a number: std::max(0, NaN) is 0
+        const bool known = std::isfinite(profile.gi[b]) && std::isfinite(error);
+        low.push_back(known ? number(std::max(0.0, profile.gi[b] - z * error)) : json(nullptr));
+        high.push_back(known ? number(std::min(1.0, profile.gi[b] + z * error)) : json(nullptr));
+        target.push_back(number(std::isfinite(profile.gi[b]) ? at(evaluation.target, b) : kUndefined));
+    }
+    json drift = misfit_json(evaluation.drift_misfit);
+    drift["value"] = number(evaluation.drift.value);
+    drift["noise_floor"] = number(evaluation.drift.noise_floor);
+    drift["tolerance"] = number(study.objective.x_drift_tolerance);
+    drift["profile"] = drift_profile_json(evaluation.drift);
+    json map = {{"x_m", numbers(evaluation.map.x_m)},
+                {"y_m", numbers(evaluation.map.y_m)},
+                {"gi", grid(evaluation.map.gi, evaluation.map.x_m.size())},
+                {"mass_kg", grid(evaluation.map.mass_kg, evaluation.map.x_m.size())},
+                {"order", "gi[y][x]"}};
+    json object = evaluation_summary(study, evaluation);
+    for (const char* key : {"y_m", "gi", "standard_error"}) object.erase(key);
+    object["study"] = study.name;
+    object["profile"] = {{"y_m", numbers(profile.y_m)},
+                         {"gi", numbers(profile.gi)},
+                         {"band_low", low},
+                         {"band_high", high},
+                         {"standard_error", numbers(profile.standard_error)},
+                         {"target", target},
+                         {"weight", numbers(evaluation.weight)},
+                         {"band", "simultaneous 95 % over the bins"}};
+    object["map"] = map;
+    if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
+    object["x_drift"] = drift;
+    object["waste_a_share"] = number(evaluation.waste_a_share);
+    object["objective"] = number(evaluation.objective);
+    object["kinematic_error_bound"] = number(evaluation.kinematic_error_bound);
+    object["max_overlap_ratio"] = number(evaluation.health.max_overlap_ratio);
+    object["warnings"] = evaluation.health.warnings;
+    object["inputs"] = inputs_json(study);
+    object["reductions"] = study.reductions;
+    object["provenance"] = provenance_json();
+    object["files"] = files;
+    return object;
+}
+
+}  // namespace gradwright

@@ -1,0 +1,32 @@
+// The JSON that scripts rely on: one object for `design`, one for `evaluate`. Field names are a promise: add
+// freely, rename none. Lengths in m, everything SI, undefined = null.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "optimise/evaluation.h"
+#include "optimise/study.h"
+#include "optimise/study_result.h"
+
+namespace gradwright {
+
+/// `design`: also the content of result.json. `files`: what was written, relative to the output folder (as
+/// write_outputs returns it).
+nlohmann::json to_json(const Study& study, const StudyResult& result,
+                       const std::vector<std::string>& files = {});
+
+/// `evaluate`: one design at one fidelity.
+nlohmann::json evaluation_json(const Study& study, const Evaluation& evaluation,
+                               const std::vector<std::string>& files = {});
+
+// Parts shared with the report and partition.json.
+nlohmann::json design_json(const Study& study, const Design& design);
+nlohmann::json misfit_json(const Misfit& misfit);
+nlohmann::json inputs_json(const Study& study);
+
+/// Critical value z of a simultaneous 95 % band over `bins` bins (Bonferroni): Phi(z) = 1 - 0.025/bins.
+/// `bins` >= 1.
+double simultaneous_quantile(int bins);
+
+}  // namespace gradwright

@@ -1,0 +1,214 @@
+#include "reports/wording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace gradwright {
+namespace {
+
+/// GI numbers carry three decimals: bins hold some hundred grains, more digits would be noise.
+std::string gi_text(double value) {
+    return std::isfinite(value) ? fmt::format("{:.3f}", value) : "undefined";
+}
+std::string percent(double share) {
+    return std::isfinite(share) ? fmt::format("{:.0f} %", 100 * share) : "undefined";
+}
+
+const char* norm_name(Norm norm) {
+    switch (norm) {
+        case Norm::rmse:
+            return "rms misfit";
+        case Norm::mean_absolute:
+            return "mean absolute misfit";
+        case Norm::max:
+            return "largest misfit";
+    }
+    return "misfit";
+}
+
+std::string against(const Misfit& misfit) {
+    return fmt::format("{} (95 % interval {} to {} after noise, floor {}), tolerance {}",
+                       gi_text(misfit.value), gi_text(misfit.interval_low), gi_text(misfit.interval_high),
+                       gi_text(misfit.noise_floor), gi_text(misfit.tolerance));
+}
+
+std::string margin(const char* name, const Misfit& misfit) {
+    switch (verdict_of(misfit)) {
+        case Verdict::met:
+            return fmt::format("{}: at most {}, {} inside the tolerance of {}", name,
+                               gi_text(misfit.interval_high),
+                               gi_text(misfit.tolerance - misfit.interval_high), gi_text(misfit.tolerance));
+        case Verdict::not_met:
+            return fmt::format("{}: at least {}, {} beyond the tolerance of {}", name,
+                               gi_text(misfit.interval_low), gi_text(misfit.interval_low - misfit.tolerance),
+                               gi_text(misfit.tolerance));
+        case Verdict::undecided:
+            return fmt::format(
+                "{}: between {} and {} with a noise floor of {}, so the tolerance of {} is neither met nor "
+                "missed",
+                name, gi_text(misfit.interval_low), gi_text(misfit.interval_high),
+                gi_text(misfit.noise_floor), gi_text(misfit.tolerance));
+    }
+    return {};
+}
+
+std::string fill_line(const Study& study, const StudyResult& result, int chamber) {
+    const Scene& scene = study.scene;
+    const Powder& powder = scene.powder[static_cast<std::size_t>(chamber)];
+    const double length = scene.dispenser_length, width = study.dispenser_width;
+    double area = length * width;
+    if (result.design.partition.points.size() >= 2) {
+        const double area_a = result.design.partition.area_a(length, width);
+        area = chamber == 0 ? area_a : area - area_a;
+    }
+    const double fraction = result.design.fill_fraction[static_cast<std::size_t>(chamber)];
+    std::string line = fmt::format("{}: {}, D10/D50/D90 {:.0f}/{:.0f}/{:.0f} um, fill fraction {:.3g}",
+                                   chamber == 0 ? "A" : "B", powder.material.name, powder.size.d10 * 1e6,
+                                   powder.size.d50 * 1e6, powder.size.d90 * 1e6, fraction);
+    if (fraction < 1)
+        line +=
+            fmt::format(" (level {} mm below the rim)", millimetres((1 - fraction) * scene.dispenser_depth));
+    line += fmt::format(", {:.2f} mm2 in plan", area * 1e6);
+    const double packing = result.beds.empty() ? 0 : result.beds.front().packing_fraction;
+    if (packing >
+        0)  // a real well is as deep as the machine says; the bed that was simulated may be shallower
+        line += fmt::format(", about {:.3g} mg at packing {:.2f}",
+                            area * scene.dispenser_depth * fraction * packing * powder.material.density * 1e6,
+                            packing);
+    return line;
+}
+
+}  // namespace
+
+std::string millimetres(double metres) {
+    const std::string text = fmt::format("{:.3f}", metres * 1e3);
+    return text == "-0.000" ? "0.000" : text;
+}
+
+std::string duration(double seconds) {
+    if (!std::isfinite(seconds)) return "unknown";
+    if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+    const long whole = std::lround(seconds);
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::vector<PartitionRow> partition_rows(const Study& study, const Design& design) {
+    std::vector<PartitionRow> rows;
+    if (design.partition.points.size() < 2) return rows;
+    const auto points = design.partition.clipped(study.scene.dispenser_length, study.dispenser_width);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        PartitionRow row{static_cast<int>(i) + 1, points[i].x * 1e3, points[i].y * 1e3,
+                         std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+        if (i + 1 < points.size()) {
+            const double dx = points[i + 1].x - points[i].x, dy = points[i + 1].y - points[i].y;
+            row.length_mm = std::hypot(dx, dy) * 1e3;
+            row.angle_deg = std::atan2(dy, dx) * 180 / std::numbers::pi;
+        }
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Wording wording(const Study& study, const StudyResult& result) {
+    Wording words;
+    const bool proved = !result.confirmed.gi.empty();
+    const bool measured = proved || !result.predicted.profile.gi.empty();
+    const std::string name = norm_name(result.misfit.norm);
+    if (!measured || result.termination == "failed" || result.termination == "not_run") {
+        words.state = "failed";
+        words.headline = "No result";
+        words.verdict =
+            result.message.empty()
+                ? fmt::format("The search ended without a measured gradation ({}).", result.termination)
+                : result.message;
+    } else {
+        const std::string source = proved ? "confirmed" : "predicted (not confirmed)";
+        const std::string misfit = margin((source + " " + name).c_str(), result.misfit);
+        const std::string drift = margin("x drift", result.drift_misfit);
+        switch (result.verdict) {
+            case Verdict::met:
+                words.state = "met";
+                words.headline = "Target met";
+                break;
+            case Verdict::not_met:
+                words.state = "not_met";
+                words.headline = "Target not met";
+                break;
+            case Verdict::undecided:
+                words.state = "undecided";
+                words.headline = "Undecided";
+                break;
+        }
+        words.verdict = fmt::format("{}; {}.", misfit, drift);
+        words.verdict.front() = static_cast<char>(std::toupper(words.verdict.front()));
+    }
+    if (measured) {
+        words.misfit = fmt::format("{} {}", name, against(result.misfit));
+        words.drift = fmt::format("x drift {}", against(result.drift_misfit));
+    }
+    if (proved) {
+        const std::size_t n = result.confirmations.size();
+        words.sure = fmt::format("{} spread{} of the full width with both powders in {}, on packing seed{}",
+                                 n, n == 1 ? "" : "s", n == 1 ? "it" : "them", n == 1 ? " " : "s ");
+        for (std::size_t i = 0; i < n; ++i)
+            words.sure += fmt::format("{}{}", i ? ", " : "", result.confirmations[i].seed);
+        words.sure +=
+            fmt::format(" that the search never saw; standard errors from {}.",
+                        n >= 3 ? "the replicates"
+                               : "a block bootstrap over x (three replicates would give them directly)");
+    } else {
+        words.sure = "No confirming spread with both powders in it: every number here is a prediction.";
+    }
+
+    const auto rows = partition_rows(study, result.design);
+    if (rows.size() < 2) {
+        words.build = "no partition inside the dispenser";
+    } else {
+        words.build =
+            result.design.family == Family::straight ? "straight partition, mm:" : "polyline partition, mm:";
+        for (const PartitionRow& row : rows)
+            words.build +=
+                fmt::format(" ({}, {})", millimetres(row.x_mm * 1e-3), millimetres(row.y_mm * 1e-3));
+    }
+    if (rows.size() >= 2)
+        for (int chamber : {0, 1}) words.fill.push_back(fill_line(study, result, chamber));
+    const Scene scene = scene_of(study, result.design, false, result.seed);
+    words.dose =
+        fmt::format("dosage factor {:.3g}: raise the dispenser floor by {} mm; layer {} mm, gap {} mm",
+                    result.design.dosage_factor, millimetres(scene.dose_height),
+                    millimetres(scene.layer_thickness), millimetres(scene.gap));
+    if (scene.land > 0) words.dose += fmt::format("; land {} mm", millimetres(scene.land));
+    const double shift = result.design.footprint_offset;
+    words.dose +=
+        fmt::format("; part at x {} to {} mm of the platform", millimetres(study.footprint.x_low + shift),
+                    millimetres(study.footprint.x_high + shift));
+    if (measured)
+        words.losses = fmt::format(
+            "{} of the dosed solid is laid, {} overflows ({} of it A); coverage {}, supply ratio {:.2f}",
+            percent(result.capture_fraction), percent(result.waste_fraction), percent(result.waste_a_share),
+            percent(result.coverage), result.supply_ratio);
+    words.warnings = study.warnings;
+    words.warnings.insert(words.warnings.end(), result.warnings.begin(), result.warnings.end());
+    for (const Evaluation& evaluation : result.confirmations)
+        words.warnings.insert(words.warnings.end(), evaluation.health.warnings.begin(),
+                              evaluation.health.warnings.end());
+    const double drift = proved ? result.confirmed_drift.value : result.predicted.drift.value;
+    if (measured && drift > 0.1)  // physics.md 5: above 0.1 it stands on the first screen
+        words.warnings.push_back(
+            fmt::format("x drift {:.3f}: the gradation changes along the spreading direction; the profile "
+                        "averaged over x hides it",
+                        drift));
+    std::vector<std::string> unique;
+    for (const std::string& warning : words.warnings)
+        if (std::find(unique.begin(), unique.end(), warning) == unique.end()) unique.push_back(warning);
+    words.warnings = unique;
+    return words;
+}
+
+}  // namespace gradwright

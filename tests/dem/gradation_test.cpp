@@ -1,0 +1,549 @@
+// Gradation of laid layers: sums, bands, drift and the y-homogeneous estimator, on layers whose truth is
+// known.
+#include "dem/gradation.h"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "dem/block_variance.h"
+#include "dem/homogeneous_estimator.h"
+#include "tests/dem/synthetic_layer.h"
+
+namespace gradwright {
+namespace {
+
+const BinGrid kBins{0.2e-3, 8};
+const Footprint kFootprint{1.6e-3, 3.2e-3, 0, 1.6e-3};
+const PartitionCurve kCurve{
+    {{0.3e-3, 1.25e-3}, {1.0e-3, 1.0e-3}, {1.6e-3, 0.8e-3}, {2.4e-3, 0.6e-3}, {3.0e-3, 0.35e-3}}};
+
+/// Grains given one by one: x, y, volume; origins at the deposit.
+Layer layer_of(const std::vector<std::array<double, 3>>& grains) {
+    Layer layer;
+    layer.width = 1.6e-3;
+    layer.platform_length = 3.2e-3;
+    layer.gap = 100e-6;
+    for (const auto& [x, y, v] : grains) {
+        layer.deposit_x.push_back(x);
+        layer.deposit_y.push_back(y);
+        layer.origin_x.push_back(x);
+        layer.origin_y.push_back(y);
+        layer.volume.push_back(v);
+    }
+    layer.is_a.assign(grains.size(), 0);
+    return layer;
+}
+
+// ---- sums
+// -----------------------------------------------------------------------------------------------------------------------
+
+TEST(gradation, gi_is_the_volume_share_of_a_in_half_open_bins) {
+    const Layer layer =
+        layer_of({{2e-3, 0.05e-3, 3}, {2e-3, 0.1e-3, 1}, {2e-3, 0.2e-3, 5}, {2e-3, 0.3e-3, 5}});
+    const GradationProfile profile =
+        plain_profile(layer, std::vector<double>{1, 0, 1, 1}, kFootprint, kBins, 1);
+    EXPECT_DOUBLE_EQ(profile.gi[0], 0.75);
+    EXPECT_DOUBLE_EQ(profile.volume[0], 4);
+    EXPECT_DOUBLE_EQ(profile.n_eff[0], 16.0 / 10.0);
+    EXPECT_DOUBLE_EQ(profile.volume[1], 10);  // y = 0.2 mm belongs to the upper bin
+    EXPECT_TRUE(std::isnan(profile.gi[2]));
+    EXPECT_TRUE(std::isnan(profile.standard_error[2]));
+    EXPECT_DOUBLE_EQ(profile.y_m[1], 0.3e-3);
+}
+
+TEST(gradation, periodic_deposits_are_wrapped_and_grains_outside_the_footprint_do_not_count) {
+    const Layer layer =
+        layer_of({{2e-3, -0.05e-3, 1}, {2e-3, 1.65e-3, 1}, {1.5e-3, 0.05e-3, 1}, {3.2e-3, 0.05e-3, 1}});
+    const GradationProfile profile =
+        plain_profile(layer, std::vector<double>{1, 0, 1, 1}, kFootprint, kBins, 1);
+    EXPECT_DOUBLE_EQ(profile.gi[7], 1);
+    EXPECT_DOUBLE_EQ(profile.gi[0], 0);
+    EXPECT_DOUBLE_EQ(std::accumulate(profile.volume.begin(), profile.volume.end(), 0.0), 2);
+}
+
+TEST(gradation, bins_not_wholly_inside_the_footprint_do_not_count) {
+    Footprint narrow = kFootprint;
+    narrow.y_low = 0.1e-3;
+    narrow.y_high = 0.6e-3;
+    const Layer layer =
+        layer_of({{2e-3, 0.15e-3, 1}, {2e-3, 0.25e-3, 1}, {2e-3, 0.55e-3, 1}, {2e-3, 0.65e-3, 1}});
+    const GradationProfile profile = plain_profile(layer, std::vector<double>(4, 1), narrow, kBins, 1);
+    EXPECT_TRUE(std::isnan(profile.gi[0]));
+    EXPECT_DOUBLE_EQ(profile.gi[1], 1);
+    EXPECT_DOUBLE_EQ(profile.gi[2], 1);
+    EXPECT_TRUE(std::isnan(profile.gi[3]));
+}
+
+TEST(gradation, map_holds_share_and_mass_of_every_cell) {
+    const Layer layer = layer_of({{0.1e-3, 0.1e-3, 1e-15}, {0.1e-3, 0.1e-3, 3e-15}, {3.1e-3, 1.5e-3, 2e-15}});
+    const GradationMap map = gradation_map(layer, std::vector<double>{1, 0, 1}, {8000, 4000});
+    ASSERT_EQ(map.x_m.size(), 16u);
+    ASSERT_EQ(map.y_m.size(), 8u);
+    EXPECT_DOUBLE_EQ(map.gi[0], 0.25);
+    EXPECT_DOUBLE_EQ(map.mass_kg[0], 8e-12 + 12e-12);
+    EXPECT_DOUBLE_EQ(map.gi[7 * 16 + 15], 1);
+    EXPECT_TRUE(std::isnan(map.gi[1]));
+    EXPECT_EQ(map.mass_kg[1], 0);
+}
+
+TEST(gradation, coverage_counts_cells_deeper_than_half_the_mean) {
+    std::vector<std::array<double, 3>> grains;
+    for (int row = 0; row < 8; ++row) {
+        for (int column = 0; column < 8; ++column) {
+            if (column == 0) continue;                 // bare
+            const double v = column == 1 ? 0.3 : 1.0;  // thin: mean = (0.3 + 6)/8 = 0.79
+            grains.push_back({1.6e-3 + (column + 0.5) * 0.2e-3, (row + 0.5) * 0.2e-3, v});
+        }
+    }
+    EXPECT_DOUBLE_EQ(coverage(layer_of(grains), kFootprint), 6.0 / 8);
+    EXPECT_DOUBLE_EQ(coverage(layer_of({}), kFootprint), 0);
+}
+
+TEST(gradation, capture_and_packing_are_ratios_of_solid_volume) {
+    Layer layer = layer_of({{1e-3, 1e-3, 2e-14}, {1e-3, 1e-3, 3e-14}});
+    layer.dosed_solid_volume = 1e-13;
+    EXPECT_DOUBLE_EQ(layer.capture_fraction(), 0.5);
+    EXPECT_DOUBLE_EQ(layer.packing_fraction(), 5e-14 / (100e-6 * 3.2e-3 * 1.6e-3));
+    EXPECT_EQ(layer_of({}).capture_fraction(), 0);
+}
+
+TEST(gradation, origin_quantile_inverts_the_volume_weighted_distribution) {
+    Layer layer = layer_of({});
+    const int n = 1000;
+    for (int i = 0; i < n; ++i) {  // origin uniform in 0..1 by number, volume 2 t: W(t) = t^2
+        const double t = (i + 0.5) / n;
+        layer.deposit_x.push_back(2e-3);
+        layer.origin_x.push_back(t);
+        layer.volume.push_back(2 * t);
+    }
+    for (double share : {0.1, 0.5, 0.9}) {
+        EXPECT_NEAR(origin_x_quantile(std::span(&layer, 1), 1.6e-3, 3.2e-3, share), std::sqrt(share), 1e-4);
+    }
+    EXPECT_TRUE(std::isnan(origin_x_quantile(std::span(&layer, 1), 0, 1e-3, 0.5)));
+}
+
+TEST(gradation, labels_are_taken_at_the_wrapped_origin) {
+    Layer layer = layer_of({{1e-3, 0.1e-3, 1}, {1e-3, -0.1e-3, 1}, {1e-3, 1.7e-3, 1}});
+    const PartitionCurve middle{{{0, 0.8e-3}, {1e-3, 0.8e-3}}};
+    EXPECT_EQ(hard_labels(layer, middle), (std::vector<double>{0, 1, 0}));
+    layer.periodic = false;
+    EXPECT_EQ(hard_labels(layer, middle), (std::vector<double>{0, 0, 1}));
+}
+
+// ---- the y-homogeneous estimator
+// --------------------------------------------------------------------------------------------------
+
+TEST(homogeneous, one_grain_gives_its_shifted_step_averaged_over_the_bins) {
+    Layer layer = layer_of({{2e-3, 0.5e-3, 1}});
+    layer.origin_x[0] = 1e-3;     // the curve stands at 0.75 mm there
+    layer.origin_y[0] = 0.38e-3;  // it travelled 0.12 mm across: the step lies at 0.87 mm
+    const PartitionCurve line{{{0, 0.5e-3}, {2e-3, 1.0e-3}}};
+    const GradationProfile profile =
+        homogeneous_profile(std::span(&layer, 1), line, 1.6e-3, 3.2e-3, kBins, HomogeneousOptions{});
+    const std::vector<double> expected = {0, 0, 0, 0, (1.0 - 0.87) / 0.2, 1, 1, 1};
+    for (int b = 0; b < 8; ++b) EXPECT_NEAR(profile.gi[b], expected[b], 1e-12);
+}
+
+TEST(homogeneous, way_across_is_not_wrapped) {
+    // a strip of 0.4 mm: a grain that came from 1.0 mm further down still tells about y = 1.0 mm above the
+    // curve
+    Layer layer = layer_of({{2e-3, 0.3e-3, 1}});
+    layer.width = 0.4e-3;
+    layer.origin_y[0] = -0.7e-3;
+    const PartitionCurve line{{{0, 0.2e-3}, {2e-3, 0.2e-3}}};
+    const GradationProfile profile =
+        homogeneous_profile(std::span(&layer, 1), line, 1.6e-3, 3.2e-3, kBins, HomogeneousOptions{});
+    for (int b = 0; b < 8; ++b) EXPECT_NEAR(profile.gi[b], b < 6 ? 0 : 1, 1e-12);
+}
+
+TEST(homogeneous, exact_bin_means_are_the_limit_of_sampling_the_signed_distance) {
+    const Layer layer = synthetic::make_layer({.grains = 800}, 3);
+    // the same straight line once over x (exact means) and once with a fold far outside the grains (sampled)
+    const PartitionCurve over_x{{{0, 0.4e-3}, {3.2e-3, 1.2e-3}}};
+    const PartitionCurve folded{
+        {{-40e-3, -9.6e-3}, {-40e-3, -9.7e-3}, {-39.9e-3, -9.575e-3}, {3.2e-3, 1.2e-3}}};
+    for (double smoothing : {0.0, 80e-6}) {
+        HomogeneousOptions options;
+        options.smoothing = smoothing;
+        options.samples_per_bin = 200;
+        const GradationProfile exact =
+            homogeneous_profile(std::span(&layer, 1), over_x, 1.6e-3, 3.2e-3, kBins, options);
+        const GradationProfile sampled =
+            homogeneous_profile(std::span(&layer, 1), folded, 1.6e-3, 3.2e-3, kBins, options);
+        for (int b = 0; b < 8; ++b) EXPECT_NEAR(exact.gi[b], sampled.gi[b], 1e-4);
+    }
+}
+
+TEST(homogeneous, reversed_curve_swaps_the_powders) {
+    const Layer layer = synthetic::make_layer({.grains = 500}, 4);
+    PartitionCurve back = kCurve;
+    std::reverse(back.points.begin(), back.points.end());
+    const GradationProfile a = homogeneous_profile(std::span(&layer, 1), kCurve, 1.6e-3, 3.2e-3, kBins, {});
+    const GradationProfile b = homogeneous_profile(std::span(&layer, 1), back, 1.6e-3, 3.2e-3, kBins, {});
+    for (int bin = 0; bin < 8; ++bin) EXPECT_NEAR(a.gi[bin] + b.gi[bin], 1, 1e-12);
+}
+
+TEST(homogeneous, agrees_with_plain_bins_and_scatters_less) {
+    // no wander: grains are independent, so pooling all y must gain about the square root of the number of
+    // bins
+    synthetic::Law law;
+    law.wander = 0;
+    law.grains = 3000;
+    double plain_square = 0, pooled_square = 0;
+    std::vector<double> plain_mean(8, 0), pooled_mean(8, 0);
+    const int n = 40;
+    std::vector<std::vector<double>> plain(n), pooled(n);
+    for (int r = 0; r < n; ++r) {
+        const Layer layer = synthetic::make_layer(law, 50 + r);
+        plain[r] = plain_profile(layer, hard_labels(layer, kCurve), kFootprint, kBins, 1, 0.3e-3, 0).gi;
+        pooled[r] = homogeneous_profile(std::span(&layer, 1), kCurve, 1.6e-3, 3.2e-3, kBins, {}).gi;
+        for (int b = 0; b < 8; ++b) {
+            plain_mean[b] += plain[r][b] / n;
+            pooled_mean[b] += pooled[r][b] / n;
+        }
+    }
+    for (int b = 2; b < 6;
+         ++b) {  // inner bins: hard_labels wraps at the sides, the homogeneous picture does not
+        for (int r = 0; r < n; ++r) {
+            plain_square += std::pow(plain[r][b] - plain_mean[b], 2) / (n - 1) / 4;
+            pooled_square += std::pow(pooled[r][b] - pooled_mean[b], 2) / (n - 1) / 4;
+        }
+        EXPECT_NEAR(plain_mean[b], pooled_mean[b],
+                    4 * std::sqrt(0.25 / 70 / n));  // n_eff of a bin ~ 70 at worst
+    }
+    EXPECT_LT(std::sqrt(pooled_square), 0.5 * std::sqrt(plain_square));
+}
+
+TEST(homogeneous, smooth_profile_derivatives_agree_with_differences) {
+    // differences in double: the profile is twice differentiable in the knots' y, and in their x up to the
+    // kink of the slope at a grain that a knot passes
+    using Jet = ceres::Jet<double, 8>;
+    const Layer layer = synthetic::make_layer({.grains = 1500}, 8);
+    const PooledGrains grains = pool_grains(std::span(&layer, 1), 1.6e-3, 3.2e-3);
+    const Thirds thirds = thirds_of(grains);
+    const std::vector<double> x = {0.3e-3, 1.2e-3, 2.0e-3, 3.0e-3}, y = {1.2e-3, 0.95e-3, 0.7e-3, 0.4e-3};
+    std::vector<Jet> jet_x, jet_y, jet_gi, jet_drift;
+    for (int k = 0; k < 4; ++k) {
+        jet_x.emplace_back(x[k], k);
+        jet_y.emplace_back(y[k], 4 + k);
+    }
+    smooth_homogeneous_profile<Jet>(grains, jet_x, jet_y, kBins, 80e-6, jet_gi);
+    smooth_homogeneous_drift<Jet>(thirds.first, thirds.last, jet_x, jet_y, kBins, 80e-6, jet_drift);
+    double largest = 0;
+    for (int parameter = 0; parameter < 8; ++parameter) {
+        const double h = 1e-7;
+        std::vector<double> up_x = x, up_y = y, down_x = x, down_y = y, up, down, drift_up, drift_down;
+        (parameter < 4 ? up_x : up_y)[parameter % 4] += h;
+        (parameter < 4 ? down_x : down_y)[parameter % 4] -= h;
+        smooth_homogeneous_profile<double>(grains, up_x, up_y, kBins, 80e-6, up);
+        smooth_homogeneous_profile<double>(grains, down_x, down_y, kBins, 80e-6, down);
+        smooth_homogeneous_drift<double>(thirds.first, thirds.last, up_x, up_y, kBins, 80e-6, drift_up);
+        smooth_homogeneous_drift<double>(thirds.first, thirds.last, down_x, down_y, kBins, 80e-6, drift_down);
+        for (int b = 0; b < 8; ++b) {
+            const double difference = (up[b] - down[b]) / (2 * h);
+            largest = std::max(largest, std::abs(difference));
+            // GI changes by up to ~ 2000 per metre of knot; 2 /m = 0.1 % of that
+            EXPECT_NEAR(jet_gi[b].v[parameter], difference, 2.0) << "bin " << b << " parameter " << parameter;
+            EXPECT_NEAR(jet_drift[b].v[parameter], (drift_up[b] - drift_down[b]) / (2 * h), 6.0)
+                << b << " " << parameter;
+        }
+    }
+    EXPECT_GT(largest, 500);
+    std::vector<double> plain;
+    smooth_homogeneous_profile<double>(grains, x, y, kBins, 80e-6, plain);
+    for (int b = 0; b < 8; ++b) EXPECT_DOUBLE_EQ(jet_gi[b].a, plain[b]);
+}
+
+TEST(homogeneous, template_and_profile_are_the_same_estimator) {
+    const Layer layer = synthetic::make_layer({.grains = 1500}, 12);
+    const PooledGrains grains = pool_grains(std::span(&layer, 1), 1.6e-3, 3.2e-3);
+    std::vector<double> x, y, gi;
+    for (PlanPoint p : kCurve.points) {
+        x.push_back(p.x);
+        y.push_back(p.y);
+    }
+    for (double smoothing : {0.0, 80e-6}) {
+        HomogeneousOptions options;
+        options.smoothing = smoothing;
+        smooth_homogeneous_profile<double>(grains, x, y, kBins, smoothing, gi);
+        const GradationProfile profile = homogeneous_profile(grains, kCurve, kBins, options);
+        for (int b = 0; b < 8; ++b) EXPECT_NEAR(gi[b], profile.gi[b], 1e-12);
+    }
+}
+
+TEST(homogeneous, smoothing_tends_to_the_hard_labels) {
+    const Layer layer = synthetic::make_layer({.grains = 1500}, 9);
+    HomogeneousOptions smooth;
+    const GradationProfile hard =
+        homogeneous_profile(std::span(&layer, 1), kCurve, 1.6e-3, 3.2e-3, kBins, {});
+    double before = 1;
+    for (double h : {200e-6, 50e-6, 1e-6}) {
+        smooth.smoothing = h;
+        const GradationProfile profile =
+            homogeneous_profile(std::span(&layer, 1), kCurve, 1.6e-3, 3.2e-3, kBins, smooth);
+        double largest = 0;
+        for (int b = 0; b < 8; ++b) largest = std::max(largest, std::abs(profile.gi[b] - hard.gi[b]));
+        EXPECT_LT(largest, before);
+        before = largest;
+    }
+    EXPECT_LT(before, 1e-4);
+}
+
+TEST(homogeneous, drift_of_a_turning_heap_is_the_difference_of_its_thirds) {
+    synthetic::Law law;
+    law.wander = law.local = law.lateral = 0;
+    law.grains = 20000;
+    const Layer layer = synthetic::make_layer(law, 10);
+    // origin / L_d = 0.7 - 0.3 x/L_b; a curve y = c - x_origin/2 gives a GI at each x that is a step in y at
+    // c - L_d origin / 2
+    const PartitionCurve line{{{0, 1.6e-3}, {3.2e-3, 0}}};
+    HomogeneousOptions options;
+    options.resamples = 1;
+    const XDrift drift = homogeneous_drift(std::span(&layer, 1), line, 0, 3.2e-3, kBins, options);
+    // step at y = 1.6 mm - 0.5 * 3.2 mm (0.7 - 0.3 t), t in the first third: 0.48 .. 0.64 mm, in the last:
+    // 0.80 .. 0.96 mm
+    for (int b = 0; b < 8; ++b) {
+        double first = 0, last = 0;
+        const int n = 1000;
+        for (int k = 0; k < n; ++k) {
+            const double u = (k + 0.5) / n;
+            first += std::clamp((kBins.low(b + 1) - (0.48e-3 + 0.16e-3 * u)) / 0.2e-3, 0.0, 1.0) / n;
+            last += std::clamp((kBins.low(b + 1) - (0.80e-3 + 0.16e-3 * u)) / 0.2e-3, 0.0, 1.0) / n;
+        }
+        EXPECT_NEAR(drift.difference[b], last - first, 0.01) << b;  // 20000 grains at random x
+    }
+    EXPECT_GT(drift.value, 0.3);
+    EXPECT_GT(drift.noise_floor, 0);
+}
+
+// ---- noise
+// ------------------------------------------------------------------------------------------------------------------------
+
+struct Coverage {
+    double pointwise = 0, error_ratio = 0;  ///< share; rms standard error over true scatter
+};
+
+/// Share of bins in which gi -+ t s holds the mean of all realisations; t = 95 % point for the degrees
+/// stated.
+template <class Estimate>
+Coverage coverage_of(int realisations, Estimate&& estimate) {
+    std::vector<GradationProfile> profiles;
+    for (int r = 0; r < realisations; ++r) profiles.push_back(estimate(r));
+    const std::size_t bins = profiles.front().gi.size();
+    std::vector<double> truth(bins, 0);
+    for (const auto& p : profiles) {
+        for (std::size_t b = 0; b < bins; ++b) truth[b] += p.gi[b] / realisations;
+    }
+    // 97.5 % points of Student's t from a table, linear in 1/d between
+    const auto student = [](double d) {
+        const std::vector<std::pair<double, double>> table = {
+            {0, 1.95996},      {1.0 / 30, 2.0423}, {1.0 / 10, 2.2281}, {1.0 / 6, 2.4469},
+            {1.0 / 4, 2.7764}, {1.0 / 3, 3.1824},  {1.0 / 2, 4.3027}};
+        for (std::size_t k = 1; k < table.size(); ++k) {
+            if (1 / d <= table[k].first) {
+                const double share = (1 / d - table[k - 1].first) / (table[k].first - table[k - 1].first);
+                return table[k - 1].second + share * (table[k].second - table[k - 1].second);
+            }
+        }
+        return 4.3027;
+    };
+    Coverage result;
+    double scatter = 0, error = 0;
+    for (const auto& p : profiles) {
+        for (std::size_t b = 0; b < bins; ++b) {
+            const double off = p.gi[b] - truth[b];
+            result.pointwise += std::abs(off) <= student(p.degrees) * p.standard_error[b];
+            scatter += off * off * realisations / (realisations - 1);
+            error += p.standard_error[b] * p.standard_error[b];
+        }
+    }
+    result.pointwise /= static_cast<double>(realisations * bins);
+    result.error_ratio = std::sqrt(error / scatter);
+    return result;
+}
+
+synthetic::Law correlated() {
+    synthetic::Law law;
+    law.grains = 4000;
+    return law;
+}
+
+TEST(noise, band_of_plain_bins_covers_when_grains_share_origins_and_the_heap_turns) {
+    const Coverage coverage = coverage_of(300, [](int r) {
+        const Layer layer = synthetic::make_layer(correlated(), 1000 + r);
+        return plain_profile(layer, hard_labels(layer, kCurve), kFootprint, kBins, 1);
+    });
+    EXPECT_GT(coverage.pointwise, 0.90);
+    EXPECT_LT(coverage.pointwise, 0.99);
+    EXPECT_NEAR(coverage.error_ratio, 1, 0.15);
+}
+
+TEST(noise, independent_grains_alone_would_not_cover) {
+    // the same layers with the variance of independent grains: the reason for the blocks
+    double inside = 0;
+    const int n = 100;
+    std::vector<GradationProfile> profiles;
+    for (int r = 0; r < n; ++r) {
+        const Layer layer = synthetic::make_layer(correlated(), 1000 + r);
+        profiles.push_back(plain_profile(layer, hard_labels(layer, kCurve), kFootprint, kBins, 1));
+    }
+    std::vector<double> truth(8, 0);
+    for (const auto& p : profiles) {
+        for (int b = 0; b < 8; ++b) truth[b] += p.gi[b] / n;
+    }
+    for (const auto& p : profiles) {
+        for (int b = 3; b < 6; ++b) {
+            inside += std::abs(p.gi[b] - truth[b]) <= 1.96 * std::sqrt(p.gi[b] * (1 - p.gi[b]) / p.n_eff[b]);
+        }
+    }
+    EXPECT_LT(inside / (3 * n), 0.88);
+}
+
+TEST(noise, band_of_the_homogeneous_estimator_covers) {
+    const Coverage coverage = coverage_of(300, [](int r) {
+        synthetic::Law strip = correlated();
+        strip.width = 0.4e-3;
+        strip.grains = 1200;
+        strip.patch_y = 0.2e-3;
+        const Layer layer = synthetic::make_layer(strip, 1000 + r);
+        HomogeneousOptions options;
+        options.resamples = 1;
+        return homogeneous_profile(std::span(&layer, 1), kCurve, 1.6e-3, 3.2e-3, kBins, options);
+    });
+    EXPECT_GT(coverage.pointwise, 0.90);
+    EXPECT_LT(coverage.pointwise, 0.99);
+    EXPECT_NEAR(coverage.error_ratio, 1, 0.15);
+}
+
+TEST(noise, band_of_pooled_layers_covers_when_beds_differ) {
+    // each bed has a shift of its own, which no block of one layer can know: three layers can
+    const Coverage coverage = coverage_of(200, [](int r) {
+        std::vector<Layer> layers;
+        for (int l = 0; l < 4; ++l) {
+            synthetic::Law strip = correlated();
+            strip.width = 0.4e-3;
+            strip.grains = 600;
+            Random bed(77000 + 10 * r + l);
+            strip.start += 0.05 * bed.normal();
+            layers.push_back(synthetic::make_layer(strip, 5000 + 10 * r + l));
+        }
+        HomogeneousOptions options;
+        options.resamples = 1;
+        return homogeneous_profile(layers, kCurve, 1.6e-3, 3.2e-3, kBins, options);
+    });
+    EXPECT_GT(coverage.pointwise, 0.90);
+    EXPECT_LT(coverage.pointwise, 0.99);
+    EXPECT_NEAR(coverage.error_ratio, 1, 0.15);
+}
+
+TEST(noise, band_of_the_mean_of_three_replicates_covers_when_beds_differ) {
+    const Coverage coverage = coverage_of(150, [](int r) {
+        std::vector<GradationProfile> replicates;
+        for (int l = 0; l < 3; ++l) {
+            synthetic::Law law = correlated();
+            law.grains = 2000;
+            Random bed(88000 + 10 * r + l);
+            law.start += 0.04 * bed.normal();
+            const Layer layer = synthetic::make_layer(law, 9000 + 10 * r + l);
+            replicates.push_back(plain_profile(layer, hard_labels(layer, kCurve), kFootprint, kBins, 1));
+        }
+        return mean_profile(replicates);
+    });
+    EXPECT_GT(coverage.pointwise, 0.90);
+    EXPECT_LT(coverage.pointwise, 0.99);
+    EXPECT_NEAR(coverage.error_ratio, 1, 0.15);
+}
+
+TEST(noise, band_of_the_drift_covers) {
+    const Coverage coverage = coverage_of(300, [](int r) {
+        const Layer layer = synthetic::make_layer(correlated(), 1000 + r);
+        const XDrift drift = plain_drift(layer, hard_labels(layer, kCurve), kFootprint, kBins, 1);
+        GradationProfile as_profile;
+        as_profile.gi = drift.difference;
+        as_profile.standard_error = drift.standard_error;
+        as_profile.degrees = drift.degrees;
+        return as_profile;
+    });
+    EXPECT_GT(coverage.pointwise, 0.90);
+    EXPECT_LT(coverage.pointwise, 0.99);
+    EXPECT_NEAR(coverage.error_ratio, 1, 0.15);
+}
+
+TEST(noise, plateau_keeps_the_variance_of_the_grain_not_seen) {
+    std::vector<std::array<double, 3>> grains;
+    for (int i = 0; i < 100; ++i) grains.push_back({1.6e-3 + 1.6e-3 * (i + 0.5) / 100, 0.1e-3, 1});
+    const GradationProfile profile =
+        plain_profile(layer_of(grains), std::vector<double>(100, 1), kFootprint, kBins, 1);
+    const double p0 = 1.0 / 102;
+    EXPECT_NEAR(profile.standard_error[0], std::sqrt(p0 * (1 - p0) / 100), 1e-15);
+}
+
+TEST(noise, drift_along_x_is_not_taken_for_noise) {
+    // labels that change linearly along x and nothing else: the mean is certain, only its trend is large
+    std::vector<std::array<double, 3>> grains;
+    std::vector<double> label;
+    for (int i = 0; i < 1000; ++i) {
+        grains.push_back({1.6e-3 + 1.6e-3 * (i + 0.5) / 1000, 0.1e-3, 1});
+        label.push_back((i + 0.5) / 1000);
+    }
+    // what is left is the floor of a plateau, p0 (1 - p0)/n_eff = 1e-6
+    const GradationProfile profile = plain_profile(layer_of(grains), label, kFootprint, kBins, 1);
+    EXPECT_LT(profile.standard_error[0], 1.5e-3);
+    std::vector<BinMoments> bins(1, BinMoments(5));
+    for (int i = 0; i < 1000; ++i) bins[0].add(i / 200, grains[i][0], 1, label[i]);
+    EXPECT_LT(bin_variances(bins, BlockTrend::linear, BinGrains::own).variance[0], 2e-6);
+    EXPECT_GT(bin_variances(bins, BlockTrend::none, BinGrains::own).variance[0], 1e-3);
+}
+
+TEST(noise, mean_of_two_replicates_propagates_their_own_errors) {
+    GradationProfile a;
+    a.y_m = {0.1e-3, 0.3e-3};
+    a.gi = {0.4, std::numeric_limits<double>::quiet_NaN()};
+    a.standard_error = {0.03, std::numeric_limits<double>::quiet_NaN()};
+    a.volume = {1, 0};
+    a.n_eff = {200, 0};
+    a.degrees = 5;
+    GradationProfile b = a;
+    b.gi = {0.5, 0.9};
+    b.standard_error = {0.04, 0.05};
+    b.volume = {1, 1};
+    b.n_eff = {200, 100};
+    const GradationProfile mean = mean_profile(std::vector<GradationProfile>{a, b});
+    EXPECT_DOUBLE_EQ(mean.gi[0], 0.45);
+    EXPECT_DOUBLE_EQ(mean.standard_error[0], 0.025);
+    EXPECT_DOUBLE_EQ(mean.gi[1], 0.9);
+    EXPECT_DOUBLE_EQ(mean.standard_error[1], 0.05);
+    EXPECT_DOUBLE_EQ(mean.degrees, 10);
+}
+
+TEST(noise, variance_of_three_replicates_adds_up_to_what_lies_between_them) {
+    std::vector<GradationProfile> replicates(3);
+    const double values[3][2] = {{0.40, 0.70}, {0.46, 0.66}, {0.52, 0.71}};
+    for (int r = 0; r < 3; ++r) {
+        replicates[r].y_m = {0.1e-3, 0.3e-3};
+        replicates[r].gi = {values[r][0], values[r][1]};
+        replicates[r].standard_error = {0.03, 0.03};
+        replicates[r].volume = {1, 1};
+        replicates[r].n_eff = {200, 200};
+    }
+    const GradationProfile mean = mean_profile(replicates);
+    const double between =
+        0.0036 / 3 + 0.0007 / 3;  // sample variances 0.0036 and 0.0007 of the two bins, of a mean of 3
+    EXPECT_NEAR(std::pow(mean.standard_error[0], 2) + std::pow(mean.standard_error[1], 2), between, 1e-12);
+    EXPECT_GT(mean.standard_error[0], mean.standard_error[1]);
+}
+
+TEST(noise, the_same_input_gives_the_same_bits) {
+    const Layer layer = synthetic::make_layer(correlated(), 21);
+    const std::vector<double> label = hard_labels(layer, kCurve);
+    EXPECT_EQ(plain_profile(layer, label, kFootprint, kBins, 1).standard_error,
+              plain_profile(layer, label, kFootprint, kBins, 1).standard_error);
+}
+
+}  // namespace
+}  // namespace gradwright

@@ -1,0 +1,480 @@
+// The study file: what a sound one becomes, and what every unsound one is told. bad_studies/ is the table of
+// bad studies: each file ends with its expected messages, one "# expect:" line per problem, compared word for
+// word.
+#include "optimise/study_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+namespace gradwright {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const fs::path kSource = GRADWRIGHT_SOURCE_DIR;
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+std::vector<std::string> messages(const std::string& text, const std::string& name,
+                                  const std::vector<std::string>& overrides = {}) {
+    std::vector<std::string> result;
+    try {
+        parse_study(text, name, overrides);
+    } catch (const InputError& error) {
+        for (const InputProblem& problem : error.problems) result.push_back(problem.text());
+    }
+    return result;
+}
+
+/// The shortest sound study: everything else is a default.
+const std::string kShort = R"([machine]
+use = "coupon-rig"
+[powder.A]
+material = "SS17-4PH"
+[powder.B]
+material = "IN718"
+[target]
+shape = "linear"
+from = { y = "0.4 mm", gi = 0.0 }
+to = { y = "1.2 mm", gi = 1.0 }
+)";
+
+Study parsed(const std::string& more = "", const std::vector<std::string>& overrides = {}) {
+    try {
+        return parse_study(kShort + more, "short.toml", overrides);
+    } catch (const InputError& error) {
+        ADD_FAILURE() << report_of(error);
+        return {};
+    }
+}
+
+const InputEntry* input(const Study& study, const std::string& key) {
+    const auto it = std::find_if(study.inputs.begin(), study.inputs.end(),
+                                 [&](const InputEntry& e) { return e.key == key; });
+    return it == study.inputs.end() ? nullptr : &*it;
+}
+
+std::string origin(const Study& study, const std::string& key) {
+    const InputEntry* entry = input(study, key);
+    return entry ? entry->origin : "missing";
+}
+
+// --- bad studies
+// ----------------------------------------------------------------------------------------------------
+
+class BadStudy : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadStudy, is_told_exactly_its_problems_all_at_once) {
+    const fs::path folder = kSource / "tests" / "optimise" / "bad_studies";
+    const std::string text = text_of(folder / (GetParam() + ".toml"));
+    std::vector<std::string> expected;
+    std::istringstream lines(text);
+    const std::string mark = "# expect: ";
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with(mark)) expected.push_back(line.substr(mark.size()));
+    ASSERT_THAT(expected, Not(IsEmpty()));
+    std::vector<std::string> obtained = messages(text, (folder / (GetParam() + ".toml")).string());
+    for (std::string& message : obtained)
+        for (auto at = message.find(folder.string() + "/"); at != std::string::npos;
+             at = message.find(folder.string() + "/"))
+            message.erase(at, folder.string().size() + 1);
+    EXPECT_EQ(obtained, expected);
+}
+
+std::vector<std::string> bad_studies() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(kSource / "tests" / "optimise" / "bad_studies"))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(table, BadStudy, testing::ValuesIn(bad_studies()),
+                         [](const auto& info) { return info.param; });
+
+TEST(study_file, that_cannot_be_read_says_so) {
+    try {
+        read_study("no/such/study.toml");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(report_of(error), HasSubstr("no/such/study.toml: cannot be read"));
+    }
+}
+
+TEST(study_file, with_any_line_missing_is_read_or_refused_but_never_half_read) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text_of(kSource / "examples" / "01_linear_coupon.toml"));
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    for (std::size_t missing = 0; missing < lines.size(); ++missing) {
+        std::string text;
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            if (i != missing) text += lines[i] + "\n";
+        try {
+            const Study study = parse_study(text, "cut.toml");
+            EXPECT_GT(study.bins.count, 0);
+            EXPECT_GT(study.scene.gap, 0);
+            EXPECT_FALSE(study.scene.powder[1].material.name.empty());
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.problems, Not(IsEmpty())) << "without line " << missing + 1;
+        }
+    }
+}
+
+TEST(study_file, cut_off_at_any_byte_never_ends_in_anything_but_a_study_or_problems) {
+    const std::string text = kShort + "[design_space]\ndosage_factor = { range = [2.0, 4.0], start = 3.0 }\n";
+    for (std::size_t length = 0; length <= text.size(); ++length) {
+        try {
+            parse_study(text.substr(0, length), "cut.toml");
+            EXPECT_GT(length, kShort.size() - 3);
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.problems, Not(IsEmpty()));
+        }
+    }
+}
+
+TEST(study_file, report_numbers_every_problem) {
+    try {
+        parse_study("", "empty.toml");
+        FAIL();
+    } catch (const InputError& error) {
+        const std::string report = report_of(error);
+        EXPECT_EQ(std::count(report.begin(), report.end(), '\n'),
+                  1 + static_cast<long>(error.problems.size()));
+        EXPECT_THAT(report, HasSubstr("  1. empty.toml"));
+    }
+}
+
+// --- overrides
+// ------------------------------------------------------------------------------------------------------
+
+TEST(overrides, replace_values_before_validation) {
+    const Study study =
+        parsed("", {"design_space.dosage_factor=[2.0, 4.0]", "process.layer_thickness=\"50 um\"",
+                    "target.to.y=1.0 mm"});  // a shell has eaten the quotes of the last one
+    EXPECT_TRUE(study.design_space.dosage_factor.free);
+    EXPECT_EQ(study.design_space.dosage_factor.value, 3.0);
+    EXPECT_EQ(study.scene.layer_thickness, 50e-6);
+    EXPECT_EQ(study.target.y1, 1e-3);
+    ASSERT_NE(input(study, "process.layer_thickness"), nullptr);
+    EXPECT_EQ(input(study, "process.layer_thickness")->note, "--set");
+}
+
+TEST(overrides, are_named_instead_of_file_and_line_in_their_problems) {
+    EXPECT_THAT(
+        messages(kShort, "short.toml", {"process.layer_thickness=40", "process.wibble=1", "machine"}),
+        ElementsAre("--set: machine: must have the form key.path=value; for instance --set "
+                    "design_space.dosage_factor=3.5",
+                    "--set: process.layer_thickness = 40: has no unit; write a string with its unit, such as "
+                    "\"40 um\"",
+                    HasSubstr("--set: process.wibble = 1: is not a known key")));
+}
+
+TEST(overrides, cannot_smuggle_in_other_keys) {
+    EXPECT_THAT(messages(kShort, "short.toml", {"run.seed=2\n[objective]\ntolerance = 0.5"}),
+                ElementsAre(HasSubstr("--set: run.seed")));
+}
+
+// --- a sound study
+// --------------------------------------------------------------------------------------------------
+
+TEST(study_defaults, are_those_of_the_paper_and_of_the_headers) {
+    const Study study = parsed();
+    EXPECT_EQ(study.name, "short");
+    EXPECT_EQ(study.scene.layer_thickness, 40e-6);
+    EXPECT_EQ(study.scene.gap, 40e-6 / 0.28);
+    EXPECT_EQ(study.scene.roughness, 40e-6);
+    EXPECT_EQ(study.scene.bed_depth, 8 * 40e-6);
+    EXPECT_EQ(study.scene.dose_height, 2 * 40e-6);
+    EXPECT_EQ(study.strip_width, 1.6e-3);
+    EXPECT_EQ(study.bins.count, 8);
+    EXPECT_EQ(study.scene.interaction.static_friction, 0.64);
+    EXPECT_EQ(study.scene.interaction.work_of_adhesion, 0.02);
+    EXPECT_EQ(study.scene.powder[0].material.density, 7980);
+    EXPECT_EQ(study.scene.powder[1].material.youngs_modulus, 195e9);
+    EXPECT_EQ(study.scene.powder[1].size.cut_low, 15e-6);
+    EXPECT_EQ(study.scene.powder[1].size.cut_high, 80e-6);
+    EXPECT_EQ(study.scene.wall.name, "geometry");
+    EXPECT_EQ(study.footprint.x_high, 3.2e-3);
+    EXPECT_EQ(study.footprint.y_high, 1.6e-3);
+    EXPECT_TRUE(study.gap_steady);
+    EXPECT_THAT(study.warnings, IsEmpty());
+}
+
+TEST(study_inputs, say_where_every_value_comes_from) {
+    const Study study = parsed("[process]\nblade_speed = \"0.1 m/s\"\n");
+    EXPECT_EQ(origin(study, "process.blade_speed"), "given");
+    EXPECT_EQ(input(study, "process.blade_speed")->value, "0.1 m/s");  // in the user's own units
+    EXPECT_EQ(input(study, "process.blade_speed")->unit, "m/s");
+    EXPECT_EQ(origin(study, "process.layer_thickness"), "default");
+    EXPECT_EQ(origin(study, "process.steady_packing"), "assumed");
+    EXPECT_EQ(origin(study, "machine.dispenser.length"), "machine file");
+    EXPECT_THAT(input(study, "powder.B.material.poissons_ratio")->note, HasSubstr("our default"));
+    EXPECT_THAT(input(study, "powder.B.material.density")->note, HasSubstr("table 1"));
+    for (const InputEntry& entry : study.inputs) {
+        EXPECT_FALSE(entry.key.empty());
+        EXPECT_FALSE(entry.value.empty()) << entry.key;
+        EXPECT_THAT((std::vector<std::string>{"given", "default", "machine file", "assumed"}),
+                    Contains(entry.origin));
+        EXPECT_TRUE(entry.origin == "given" || !entry.note.empty()) << entry.key;
+    }
+}
+
+TEST(study_reductions, fines_cut_keeps_d10_to_d90) {
+    const Study study = parsed("[numerics]\nreductions = [\"fines_cut\"]\n");
+    EXPECT_EQ(study.scene.powder[0].size.cut_low, 25e-6);
+    EXPECT_EQ(study.scene.powder[1].size.cut_high, 62e-6);
+    EXPECT_EQ(input(study, "powder.A.size.cut_low")->value, "25 um");
+}
+
+TEST(study_reductions, shallow_bed_is_three_median_grains_deep) {
+    const Study study = parsed("[numerics]\nreductions = [\"shallow_bed\"]\n");
+    EXPECT_DOUBLE_EQ(study.scene.bed_depth, 120e-6);
+}
+
+TEST(study_reductions, strip_map_is_ten_median_grains_wide) {
+    const Study study = parsed("[numerics]\nreductions = [\"strip_map\"]\n");
+    EXPECT_DOUBLE_EQ(study.strip_width, 0.4e-3);
+    EXPECT_EQ(study.scene.width, 1.6e-3);
+}
+
+TEST(study_powders, b_takes_the_sizes_of_a_and_a_scales_with_its_median) {
+    std::string text = kShort;
+    text.insert(text.find("[powder.B]"), "size = { D50 = \"20 um\" }\n");
+    const Study study = parse_study(text, "fine.toml");
+    EXPECT_DOUBLE_EQ(study.scene.powder[0].size.d10, 12.5e-6);
+    EXPECT_DOUBLE_EQ(study.scene.powder[0].size.cut_high, 40e-6);
+    EXPECT_EQ(study.scene.powder[1].size.d50, 20e-6);
+    EXPECT_EQ(study.scene.powder[1].size.d90, study.scene.powder[0].size.d90);
+}
+
+TEST(study_powders, a_material_of_ones_own_stands_in_the_study) {
+    std::string text = kShort;
+    const std::string named = "material = \"IN718\"";
+    text.replace(
+        text.find(named), named.size(),
+        "material = { density = \"4.43 g/cm3\", youngs_modulus = \"114 GPa\", poissons_ratio = 0.33 }");
+    const Study study = parse_study(text, "own.toml");
+    EXPECT_DOUBLE_EQ(study.scene.powder[1].material.density, 4430);
+    EXPECT_EQ(study.scene.powder[1].material.youngs_modulus, 114e9);
+    EXPECT_EQ(study.scene.powder[1].material.poissons_ratio, 0.33);
+}
+
+TEST(study_interaction, work_of_adhesion_is_twice_the_surface_energy) {
+    const Study study = parsed("[interaction]\nsurface_energy = \"10 mJ/m2\"\n");
+    EXPECT_DOUBLE_EQ(study.scene.interaction.work_of_adhesion, 0.02);
+}
+
+TEST(study_dose, rises_with_the_platform_and_falls_with_the_dispenser) {
+    const Study study = parsed("[design_space]\ndosage_factor = 3.0\n",
+                               {"machine.platform.length=6.4 mm", "machine.dispenser.length=1.6 mm"});
+    EXPECT_DOUBLE_EQ(study.scene.dose_height, 3 * 40e-6 * 6.4 / 1.6);
+}
+
+TEST(study_dose, a_chamber_keeps_its_headspace_while_the_floor_rises_further) {
+    const Study study = parsed("[design_space]\nfill_fraction = { A = 0.95, B = 1.0 }\n");
+    EXPECT_NEAR(study.scene.headspace[0], 0.05e-3, 1e-12);
+    EXPECT_EQ(study.scene.headspace[1], 0);
+}
+
+TEST(study_design_space, pairs_free_a_variable_and_start_says_where_to_begin) {
+    const Study study = parsed(
+        "[design_space]\ndosage_factor = { range = [2.0, 5.0], start = 2.5 }\nland = [\"1 mm\", \"6 mm\"]\n"
+        "footprint_offset = \"0 mm\"\npartition = { family = \"straight\", angle = [\"-10 deg\", \"20 deg\"] "
+        "}\n");
+    const DesignSpace& space = study.design_space;
+    EXPECT_EQ(space.dosage_factor.value, 2.5);
+    EXPECT_EQ(space.dosage_factor.low, 2.0);
+    EXPECT_EQ(space.land.high, 6e-3);
+    EXPECT_EQ(space.land.value, 3.2e-3);  // the machine's own land lies inside the bounds
+    EXPECT_FALSE(space.footprint_offset.free);
+    EXPECT_DOUBLE_EQ(space.angle_deg.low, -10);
+    EXPECT_DOUBLE_EQ(space.angle_deg.value, 5);
+    EXPECT_DOUBLE_EQ(space.offset.high, 0.8e-3);  // half the width
+    EXPECT_TRUE(space.partition_free);
+}
+
+TEST(study_design_space, points_fix_the_partition_and_start_frees_it) {
+    const std::string points = "[[\"0 mm\", \"0.4 mm\"], [\"1.6 mm\", \"0.9 mm\"], [\"3.2 mm\", \"1.2 mm\"]]";
+    const Study fixed = parsed("[design_space]\npartition = { points = " + points + " }\n");
+    const Study free = parsed("[design_space]\npartition = { start = " + points + " }\n");
+    EXPECT_FALSE(fixed.design_space.partition_free);
+    EXPECT_TRUE(free.design_space.partition_free);
+    ASSERT_EQ(free.design_space.given_points.size(), 3u);
+    EXPECT_EQ(free.design_space.given_points[1].y, 0.9e-3);
+    EXPECT_EQ(free.design_space.knots, 3);
+}
+
+TEST(study_target, zones_and_shapes_arrive_as_written) {
+    const Study study = parsed(
+        "zones = [{ from = \"0 mm\", to = \"0.2 mm\" }, { from = \"0.6 mm\", to = \"1 mm\", weight = 2.0 "
+        "}]\n");
+    ASSERT_EQ(study.target.zones.size(), 2u);
+    EXPECT_EQ(study.target.zones[0].weight, 0);
+    EXPECT_EQ(study.target.weight(0.8e-3), 2);
+    EXPECT_NEAR(study.target(0.8e-3), 0.5, 1e-12);
+}
+
+TEST(study_target, beside_walls_two_d90_are_not_judged) {
+    const Study study = parsed("[process]\nsides = \"frictional\"\n");
+    EXPECT_DOUBLE_EQ(study.footprint.y_low, 2 * 62e-6);
+    EXPECT_DOUBLE_EQ(study.footprint.y_high, 1.6e-3 - 2 * 62e-6);
+}
+
+TEST(study_warnings, name_doubtful_pairs_of_substrate_and_gap) {
+    EXPECT_THAT(parsed("[process]\nsubstrate = \"plate\"\ngap = \"steady\"\n").warnings,
+                ElementsAre(HasSubstr("belongs to a fused substrate")));
+    EXPECT_THAT(parsed("[process]\ngap = \"layer\"\n").warnings,
+                ElementsAre(HasSubstr("smaller than the largest grain"), HasSubstr("first layer's only")));
+    EXPECT_EQ(parsed("[process]\nsubstrate = \"plate\"\n").scene.gap, 40e-6);
+    EXPECT_EQ(parsed("[process]\ngap = \"150 um\"\n").scene.gap, 150e-6);
+}
+
+TEST(study_name, is_text_whatever_it_looks_like) {
+    EXPECT_EQ(parsed("", {"study.name=\"<script>alert(1)</script>\""}).name, "<script>alert(1)</script>");
+}
+
+// --- what ships
+// -----------------------------------------------------------------------------------------------------
+
+TEST(examples, are_sound_and_state_the_command_that_runs_them) {
+    for (const char* name : {"01_linear_coupon", "02_sigmoid_coupon", "03_paper_five_degrees"}) {
+        const fs::path file = kSource / "examples" / (std::string(name) + ".toml");
+        EXPECT_THAT(text_of(file).substr(0, 120), HasSubstr("./gradwright ")) << name;
+        EXPECT_THAT(text_of(file).substr(0, 120), HasSubstr(std::string("examples/") + name)) << name;
+        try {
+            EXPECT_THAT(read_study(file.string()).warnings, IsEmpty()) << name;
+        } catch (const InputError& error) {
+            ADD_FAILURE() << report_of(error);
+        }
+    }
+}
+
+TEST(examples, ask_for_the_targets_of_the_two_coupons) {
+    const Study linear = read_study((kSource / "examples" / "01_linear_coupon.toml").string());
+    EXPECT_NEAR(linear.target(0.6e-3), 0.25, 1e-12);
+    EXPECT_EQ(linear.objective.tolerance, 0.04);
+    EXPECT_EQ(linear.objective.x_drift_tolerance, 0.10);
+    EXPECT_EQ(linear.footprint.x_low, 1.6e-3);
+    EXPECT_DOUBLE_EQ(linear.scene.dose_height, 120e-6);
+    EXPECT_DOUBLE_EQ(linear.scene.bed_depth, 120e-6);
+    const Study sigmoid = read_study((kSource / "examples" / "02_sigmoid_coupon.toml").string());
+    EXPECT_NEAR(sigmoid.target(0.6e-3), 0.1, 1e-12);
+    EXPECT_NEAR(sigmoid.target(0.9e-3), 0.5, 1e-12);
+    EXPECT_NEAR(sigmoid.target(1.2e-3), 0.9, 1e-12);
+    // "The same machine": everything that moves a grain is equal.
+    EXPECT_EQ(sigmoid.scene.dispenser_length, linear.scene.dispenser_length);
+    EXPECT_EQ(sigmoid.scene.land, linear.scene.land);
+    EXPECT_EQ(sigmoid.scene.gap, linear.scene.gap);
+    EXPECT_EQ(sigmoid.scene.dose_height, linear.scene.dose_height);
+    EXPECT_EQ(sigmoid.strip_width, linear.strip_width);
+}
+
+TEST(examples, of_the_paper_fixes_five_degrees_and_cuts_no_sizes) {
+    const Study study = read_study((kSource / "examples" / "03_paper_five_degrees.toml").string());
+    EXPECT_FALSE(study.design_space.partition_free);
+    EXPECT_DOUBLE_EQ(study.design_space.angle_deg.value, 5);
+    EXPECT_EQ(study.scene.powder[0].size.cut_low, 15e-6);
+    EXPECT_EQ(study.scene.powder[0].size.cut_high, 80e-6);
+    // The target is the sweep of the partition: L_d tan(5 deg) long, about the middle of the width.
+    const double span = study.scene.dispenser_length * std::tan(5 * std::numbers::pi / 180);
+    EXPECT_NEAR(study.target.y1 - study.target.y0, span, 1e-6);
+    EXPECT_NEAR(0.5 * (study.target.y1 + study.target.y0), 0.5 * study.dispenser_width, 1e-9);
+}
+
+TEST(shipped_machines, can_each_be_used_and_own_up_to_what_nobody_measured) {
+    const std::vector<MachineInfo> machines = shipped_machines();
+    ASSERT_GE(machines.size(), 4u);
+    for (const MachineInfo& machine : machines) {
+        EXPECT_FALSE(machine.title.empty()) << machine.name;
+        EXPECT_FALSE(machine.source.empty()) << machine.name;
+        const Study study = parsed("", {"machine.use=\"" + machine.name + "\""});
+        EXPECT_EQ(study.machine_name, machine.title);
+        if (machine.name == "coupon-rig") continue;
+        EXPECT_EQ(origin(study, "machine.platform.length"), "machine file") << machine.name;
+        EXPECT_EQ(origin(study, "machine.dispenser.length"), "assumed") << machine.name;
+        EXPECT_THAT(study.warnings, Contains(HasSubstr("machine.dispenser.length"))) << machine.name;
+    }
+}
+
+TEST(shipped_materials, are_six_alloys_and_the_wall_each_with_the_source_of_every_number) {
+    std::vector<std::string> names;
+    for (const Material& material : shipped_materials()) {
+        names.push_back(material.name);
+        EXPECT_GT(material.density, 1000) << material.name;
+        EXPECT_GT(material.youngs_modulus, 10e9) << material.name;
+        for (const char* number : {"density: ", "Young's modulus: ", "Poisson's ratio: "})
+            EXPECT_THAT(material.source, HasSubstr(number)) << material.name;
+    }
+    EXPECT_THAT(names, testing::UnorderedElementsAre("IN718", "SS17-4PH", "316L", "Ti-6Al-4V", "AlSi10Mg",
+                                                     "CuCrZr", "geometry"));
+}
+
+// --- numbers and names
+// ----------------------------------------------------------------------------------------------
+
+TEST(quantity, reads_the_same_length_in_every_unit_to_the_last_bit) {
+    EXPECT_EQ(parse_quantity("40 um", "length"), 40e-6);
+    EXPECT_EQ(parse_quantity("40um", "length"), 40e-6);
+    EXPECT_EQ(parse_quantity(" 0.04 mm ", "length"), 0.04e-3);
+    EXPECT_EQ(parse_quantity("40 \u00b5m", "length"), 40e-6);
+    EXPECT_EQ(parse_quantity("4e-5 m", "length"), 4e-5);
+    EXPECT_EQ(parse_quantity("+3.2 mm", "length"), 3.2e-3);
+}
+
+TEST(quantity, knows_the_units_of_every_dimension) {
+    EXPECT_EQ(parse_quantity("100 mm/s", "speed"), 0.1);
+    EXPECT_EQ(parse_quantity("180 deg", "angle"), std::numbers::pi);
+    EXPECT_EQ(parse_quantity("0.02 J/m2", "work_of_adhesion"), 0.02);
+    EXPECT_EQ(parse_quantity("195 GPa", "pressure"), 195e9);
+    EXPECT_DOUBLE_EQ(parse_quantity("8.2 g/cm3", "density"), 8200);
+    EXPECT_EQ(parse_quantity("9.81 m/s2", "acceleration"), 9.81);
+}
+
+TEST(quantity, refuses_what_is_no_finite_number_with_a_unit_of_that_dimension) {
+    for (const char* text : {"", "um", "40", "40 furlong", "40 mm/s", "nan um", "inf um", "-inf um",
+                             "1e999 um", "0x10 um", "4 0 um", "40 um um", "1,5 mm", "++1 mm", "+-1 mm"})
+        EXPECT_THROW(parse_quantity(text, "length"), std::invalid_argument) << text;
+}
+
+TEST(quantity, is_written_so_that_it_reads_back) {
+    for (const char* dimension :
+         {"length", "speed", "angle", "work_of_adhesion", "pressure", "density", "acceleration"})
+        for (const double value : {0.0, 1e-7, 40e-6, 0.2e-3, 3.2e-3, 0.1, 1.0, 195e9}) {
+            const std::string text = format_quantity(value, dimension);
+            EXPECT_NEAR(parse_quantity(text, dimension), value, 5e-6 * value)
+                << text;  // 6 significant digits
+        }
+    EXPECT_EQ(format_quantity(40e-6, "length"), "40 um");
+    EXPECT_EQ(format_quantity(3.2e-3, "length"), "3.2 mm");
+    EXPECT_EQ(format_quantity(0.1, "speed"), "100 mm/s");
+}
+
+TEST(nearest_name, finds_slips_of_the_pen_and_nothing_far_away) {
+    const std::vector<std::string> names = {"tolerance", "x_drift_tolerance", "norm", "D10", "D50"};
+    EXPECT_EQ(nearest_name("tolerence", names), "tolerance");
+    EXPECT_EQ(nearest_name("NORM", names), "norm");
+    EXPECT_EQ(nearest_name("nrom", names), "norm");
+    EXPECT_EQ(nearest_name("drift", names), "x_drift_tolerance");
+    EXPECT_EQ(nearest_name("banana", names), "");
+    EXPECT_EQ(nearest_name("x", names), "");
+}
+
+}  // namespace
+}  // namespace gradwright
