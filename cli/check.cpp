@@ -147,7 +147,7 @@ void print_check(const Study& study, const StudyEstimate& estimate, int threads)
                    spread.name, count_text(spread.cost.grains), count_text(spread.cost.fixed_grains),
                    count_text(spread.cost.steps), count_text(spread.cost.grain_steps),
                    bytes_text(spread.cost.memory_bytes), duration_text(spread.seconds), spread.at_most);
-    fmt::print("  all spreads of the budget: at most {} (cold; settled beds are cached)\n",
+    fmt::print("  all spreads of the budget: at most {}; sleeping grains and cached beds cost nothing\n",
                duration_text(estimate.seconds_at_most));
     const std::vector<std::string> warnings = all_warnings(study, estimate);
     if (!warnings.empty()) fmt::print("\nWarnings\n");

@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <regex>
 
 #include "cli/check.h"
 #include "cli/common.h"
@@ -48,6 +50,20 @@ ExitCode exit_code_of(const StudyResult& result) {
     return result.verdict == Verdict::met ? ExitCode::met : ExitCode::not_met;
 }
 
+/// With --force: takes away what an earlier design left, so that two runs are never mixed in one folder. Only
+/// files whose names this program gives: evaluations (000012_full.json) and instants of the grains
+/// (particles_0001.vtkhdf).
+void remove_earlier(const std::string& folder) {
+    namespace fs = std::filesystem;
+    const std::regex evaluation("[0-9]{6}_[a-z]+[.]json"), instant("particles_[0-9]{4}[.]vtkhdf");
+    std::error_code failed;
+    for (const auto& [place, pattern] :
+         {std::pair{fs::path(folder) / "journal", &evaluation}, {fs::path(folder), &instant}})
+        for (const auto& entry : fs::directory_iterator(place, failed))
+            if (std::regex_match(entry.path().filename().string(), *pattern))
+                fs::remove(entry.path(), failed);
+}
+
 ExitCode run_design(const DesignOptions& options, CommonOptions common) {
     refuse_contradictions(options);
     // The map strategy's budget is an input of the study, so that it is listed with the others.
@@ -57,6 +73,7 @@ ExitCode run_design(const DesignOptions& options, CommonOptions common) {
     refuse_impossible(study, estimate(study, thread_count(common)));
 
     const std::string folder = make_out_folder(common, study.name);
+    if (common.force) remove_earlier(folder);
     ProgressLine progress(common.quiet);
     RunOptions run = run_options(common, progress);
     run.journal_folder = folder + "/journal";
@@ -78,11 +95,11 @@ ExitCode run_design(const DesignOptions& options, CommonOptions common) {
                            colour_allowed(STDOUT_FILENO) ? TerminalColour::ansi : TerminalColour::plain));
     const ExitCode code = exit_code_of(result);
     if (code == ExitCode::interrupted)
-        fmt::print(stderr,
-                   "gradwright: interrupted; what is finished lies in {}. The same command{} starts again; "
-                   "settled beds "
-                   "come from the cache\n",
-                   folder, common.out.empty() ? "" : " with --force");
+        fmt::print(
+            stderr,
+            "gradwright: interrupted; what is finished lies in {}. The same command{} starts again{}\n",
+            folder, common.out.empty() ? "" : " with --force",
+            run.cache_folder.empty() ? "" : "; settled beds come from the cache");
     if (code == ExitCode::simulation_failed)
         fmt::print(stderr, "gradwright: the simulation failed: {}\n", result.message);
     return code;

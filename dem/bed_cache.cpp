@@ -16,7 +16,7 @@
 namespace gradwright {
 namespace {
 
-constexpr int kEngineFormat = 1;  // raise when the engine makes other beds from the same scene
+constexpr int kEngineFormat = 2;  // raise when the engine makes other beds from the same scene
 
 std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
     Scene s = scene;  // what the bed does not depend on is blanked, so that other lands and gaps find the same bed

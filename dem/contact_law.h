@@ -203,8 +203,10 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
             mz = factor * wz;
         } else {
             const T stiffness_r = splat<T>(2.25) * stiffness_n * splat<T>(law.rolling_friction * law.rolling_friction) * c.radius * c.radius;
-            // about the contact point: 7/5 m r^2 at a wall (arm_j = arm_i there), half of it between equal grains
-            const T inertia = splat<T>(1.4) * c.mass * c.arm_i * c.arm_j;
+            // about the contact point: 7/5 m r^2 at a wall (arm_j = arm_i there), half of it between equal grains. The smaller arm:
+            // the product of both would grow without limit on a large fixed grain, and the dashpot would take off.
+            const T arm = smaller(c.arm_i, c.arm_j);
+            const T inertia = splat<T>(1.4) * c.mass * arm * arm;
             T rx = h.roll_x * keep, ry = h.roll_y * keep, rz = h.roll_z * keep;
             const T rn = rx * c.nx + ry * c.ny + rz * c.nz;
             rx += half * wx - rn * c.nx;

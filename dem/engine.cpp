@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -224,8 +225,10 @@ void Engine::check_health() {
 
 long Engine::advance(long steps) {
     long done = 0;
+    // Who sleeps is decided when the near list is made: in a bed almost at rest that must not wait for the list to run out.
+    const long sleep_look = options_.sleep ? std::max(1L, std::lround(options_.sleep_time / options_.time_step)) : std::numeric_limits<long>::max();
     while (done < steps && failed_.empty()) {
-        if (!lists_valid_ || travel_ > near_skin_) {
+        if (!lists_valid_ || travel_ > near_skin_ || steps_since_near_ >= sleep_look) {
             const double start = omp_get_wtime();
             bool rebuild = !lists_valid_;
             if (!rebuild) {
@@ -255,7 +258,7 @@ long Engine::advance(long steps) {
             max_overlap_seen_ = std::max(max_overlap_seen_, kernel_->max_overlap_ratio());
             times_.near_list += omp_get_wtime() - middle;
         }
-        const long now = kernel_->run(steps - done);
+        const long now = kernel_->run(std::min(steps - done, sleep_look - steps_since_near_));
         done += now;
     }
     if (failed_.empty() && travel_ > near_skin_) check_health();  // a run that ends here is judged here

@@ -212,7 +212,8 @@ SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, con
                                          eo.speed_limit, engine.failed(), scene.rayleigh_fraction));
             break;
         }
-        // Pinched at the rim: passed over within the blade's thickness. Pinched for longer: it is dragged along, a jam.
+        // Pinched at the rim: it rolls between blade and land at half the blade's speed, so the blade is past it after twice its
+        // thickness. Pinched for longer: it is dragged along, a jam.
         std::map<int, double> still;
         for (const std::size_t i : engine.overlapping_body(machine.blade, kJamOverlap)) {
             const int id = engine.state().id[i];
@@ -222,7 +223,7 @@ SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, con
         }
         pinched.swap(still);
         const auto longest = std::min_element(pinched.begin(), pinched.end(), [](auto& a, auto& b) { return a.second < b.second; });
-        if (longest != pinched.end() && blade_x() - longest->second > scene.blade_thickness + 5 * scene.powder[0].size.d50) {
+        if (longest != pinched.end() && blade_x() - longest->second > 2 * scene.blade_thickness + 10 * scene.powder[0].size.d50) {
             fail("jammed", fmt::format("a grain has been dragged in the nip over {:.2f} mm; raise the gap or round the blade tip",
                                        1e3 * (blade_x() - longest->second)));
             break;

@@ -15,32 +15,6 @@ std::vector<double> squared(const std::vector<double>& values) {
     return squares;
 }
 
-/// x drift of the mean: per bin the mean of the differences; its error from the replicates when there are
-/// three, else propagated.
-XDrift mean_drift(const std::vector<Evaluation>& replicates, std::size_t bins) {
-    XDrift mean;
-    mean.difference.assign(bins, kNan);
-    mean.standard_error.assign(bins, kNan);
-    for (std::size_t b = 0; b < bins; ++b) {
-        double sum = 0, squares = 0, variance = 0;
-        int n = 0;
-        for (const Evaluation& replicate : replicates) {
-            const double value = replicate.drift.difference[b];
-            if (!std::isfinite(value)) continue;
-            sum += value;
-            squares += value * value;
-            variance += replicate.drift.standard_error[b] * replicate.drift.standard_error[b];
-            ++n;
-        }
-        if (n == 0) continue;
-        mean.difference[b] = sum / n;
-        const double between = n >= 3 ? std::max(0.0, squares - sum * sum / n) / (n - 1) / n : 0;
-        // Replicates that agree to the last digit (a bin of one powder only) say nothing about their error.
-        mean.standard_error[b] = between > 0 ? std::sqrt(between) : std::sqrt(variance) / n;
-    }
-    return mean;
-}
-
 double p_value(const std::vector<double>& confirmed, const std::vector<double>& error,
                const std::vector<double>& expected, const std::vector<double>& expected_variance,
                const std::vector<double>& weight) {
@@ -75,10 +49,14 @@ ConfirmedDesign unconfirmed(const Evaluation& predicted) {
 void summarise(const Study& study, ConfirmedDesign& round) {
     if (round.confirmations.empty()) return;
     std::vector<GradationProfile> profiles;
-    for (const Evaluation& confirmation : round.confirmations) profiles.push_back(confirmation.profile);
+    std::vector<XDrift> drifts;
+    for (const Evaluation& confirmation : round.confirmations) {
+        profiles.push_back(confirmation.profile);
+        drifts.push_back(confirmation.drift);
+    }
     Evaluation together = round.confirmations.front();
     together.profile = mean_profile(profiles);
-    together.drift = mean_drift(round.confirmations, together.profile.gi.size());
+    together.drift = mean_drift(drifts);
     judge(study, together);  // the same rule as for a single one
     round.mean = together.profile;
     round.drift = together.drift;

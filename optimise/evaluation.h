@@ -27,6 +27,9 @@ struct Evaluation {
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;
     double waste_a_share = 0;  ///< A's share of the overflow [-]
     double objective = 0;      ///< what a search minimises
+    /// map only: where each sixth of the platform was laid from, mean and local standard deviation of origin_x by
+    /// volume, as shares of the dispenser's length; NaN where nothing lies. The heap's turnover, in numbers.
+    std::vector<double> origin_mean, origin_deviation;
     double kinematic_error_bound = 0;  ///< 1 - f where f is known, else 1
     long grains = 0, steps = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;

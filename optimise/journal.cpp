@@ -76,12 +76,14 @@ const auto profile_fields = [](auto io, auto& profile) {
     io("standard_error", profile.standard_error);
     io("volume_m3", profile.volume);
     io("n_eff", profile.n_eff);
+    io("degrees", profile.degrees);
 };
 const auto drift_fields = [](auto io, auto& drift) {
     io("difference", drift.difference);
     io("standard_error", drift.standard_error);
     io("value", drift.value);
     io("noise_floor", drift.noise_floor);
+    io("degrees", drift.degrees);
 };
 const auto map_fields = [](auto io, auto& map) {
     io("x_m", map.x_m);

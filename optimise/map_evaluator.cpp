@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <cmath>
 
 namespace gradwright {
@@ -117,6 +119,25 @@ Evaluation MapEvaluator::quick(const Design& design) {
     return with(design, map_of(design), false);
 }
 
+void MapEvaluator::describe_turnover(const OriginMap& map, Evaluation& evaluation) {
+    constexpr int kParts = 6;
+    std::vector<double> volume(kParts, 0), first(kParts, 0), second(kParts, 0);
+    for (const Layer& layer : map.layers)
+        for (std::size_t i = 0; i < layer.size(); ++i) {
+            const int part = std::clamp(int(layer.deposit_x[i] / layer.platform_length * kParts), 0, kParts - 1);
+            const double origin = layer.origin_x[i] / layer.dispenser_length;
+            volume[part] += layer.volume[i];
+            first[part] += layer.volume[i] * origin;
+            second[part] += layer.volume[i] * origin * origin;
+        }
+    for (int part = 0; part < kParts; ++part) {
+        const double mean = volume[part] > 0 ? first[part] / volume[part] : std::numeric_limits<double>::quiet_NaN();
+        evaluation.origin_mean.push_back(mean);
+        evaluation.origin_deviation.push_back(std::sqrt(std::max(0.0, second[part] / volume[part] - mean * mean)));
+        if (!(volume[part] > 0)) evaluation.origin_deviation.back() = mean;
+    }
+}
+
 Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted) {
     const auto begun = std::chrono::steady_clock::now();
     Evaluation evaluation;
@@ -149,6 +170,7 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
             evaluation.coverage += coverage(layer, in_strip) / double(map.layers.size());
         }
         if (quoted) {
+            describe_turnover(map, evaluation);
             const Layer whole = tiled(map.layers.front(), study_.dispenser_width);
             const std::vector<double> label = hard_labels(whole, design.partition);
             const std::vector<double> density = {study_.scene.powder[0].material.density,

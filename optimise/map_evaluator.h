@@ -46,6 +46,8 @@ class MapEvaluator : public Evaluator {
     Key key_of(const Design& design, std::uint64_t seed) const;
     Evaluation with(const Design& design, OriginMap& map, bool quoted);
 
+    static void describe_turnover(const OriginMap& map, Evaluation& evaluation);
+
     const Study& study_;
     SpreadRunner& runner_;
     Journal* journal_;

@@ -177,7 +177,7 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
     for (std::size_t b = 0; b < counting.size(); ++b)
         if (!(result.weight[b] > 0))
             counting[b] = 0;  // the band holds over the bins that the verdict is about
-    const double factor = simultaneous_factor(counting);
+    const double factor = simultaneous_factor(counting, 0.95, round.mean.degrees);
     for (std::size_t b = 0; b < round.mean.gi.size(); ++b) {
         const double half = factor * round.mean.standard_error[b];
         // NaN in an empty bin stays NaN: std::clamp would do so too, but only by the order of its arguments

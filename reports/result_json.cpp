@@ -41,7 +41,13 @@ json drift_profile_json(const XDrift& drift) {
 
 json evaluation_summary(const Study& study, const Evaluation& evaluation) {
     const bool defined = evaluation.health.ok() && !evaluation.profile.gi.empty();
+    json turnover = nullptr;
+    if (!evaluation.origin_mean.empty())
+        turnover = {{"origin_mean", numbers(evaluation.origin_mean)},
+                    {"origin_deviation", numbers(evaluation.origin_deviation)},
+                    {"parts", "sixths of the platform; shares of the dispenser's length"}};
     return {{"fidelity", to_string(evaluation.fidelity)},
+            {"turnover", turnover},
             {"status", evaluation.health.status},
             {"reason", evaluation.health.reason},
             {"seed", evaluation.seed},
@@ -88,9 +94,15 @@ json profile_json(const StudyResult& result) {
     const auto& y = proved ? result.confirmed.y_m : result.predicted.profile.y_m;
     json target = json::array(), predicted = json::array(), confirmed = json::array();
     json low = json::array(), high = json::array(), error = json::array(), weight = json::array();
+    json left_target = json::array(), left_confirmed = json::array();
     for (std::size_t b = 0; b < y.size(); ++b) {
         const double asked = at(result.target, b), found = at(result.confirmed.gi, b);
-        const bool defined = std::isfinite(asked) && (!proved || std::isfinite(found));
+        // A bin without weight (within 2 D90 of a side or the periodic seam, outside the footprint, don't care) is no
+        // part of the misfit: null in target and confirmed, its values kept apart under left_out.
+        const bool counts = !(at(result.weight, b) <= 0);
+        const bool defined = counts && std::isfinite(asked) && (!proved || std::isfinite(found));
+        left_target.push_back(number(counts ? kUndefined : asked));
+        left_confirmed.push_back(number(counts ? kUndefined : found));
         target.push_back(number(defined ? asked : kUndefined));
         predicted.push_back(number(at(result.predicted.profile.gi, b)));
         confirmed.push_back(number(defined ? found : kUndefined));
@@ -107,6 +119,7 @@ json profile_json(const StudyResult& result) {
             {"band_high", high},
             {"standard_error", error},
             {"weight", weight},
+            {"left_out", {{"target", left_target}, {"confirmed", left_confirmed}}},
             {"predicted_standard_error", numbers(result.predicted.profile.standard_error)},
             {"band", "simultaneous 95 % over the bins"}};
 }

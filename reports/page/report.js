@@ -170,7 +170,7 @@
       return { x1: (x - dx / 2) * 1e3, x2: (x + dx / 2) * 1e3, y1: (y - dy / 2) * 1e3, y2: (y + dy / 2) * 1e3, gi: value };
     });
   }
-  const profile = result.profile, bins = profile.y_m.map((y, b) => ({ y: y * 1e3, target: profile.target[b], predicted: profile.predicted[b], confirmed: profile.confirmed[b], low: profile.band_low[b], high: profile.band_high[b] }));
+  const profile = result.profile, bins = profile.y_m.map((y, b) => ({ y: y * 1e3, target: profile.target[b], predicted: profile.predicted[b], confirmed: profile.confirmed[b], low: profile.band_low[b], high: profile.band_high[b], left: profile.left_out?.confirmed[b] }));
   const half_bin = data.bin_width_m * 500, series = ["target", "predicted", "confirmed"], shades = ["#111", "#a05195", green];
   const y_end = Math.max(plan.width_m * 1e3, ...bins.map((b) => b.y + half_bin));
 
@@ -189,6 +189,7 @@
         Plot.dot(has("predicted"), { x: "y", y: "predicted", stroke: () => "predicted", fill: "#fff", symbol: "square", r: 3.5 }),
         Plot.line(has("confirmed"), { x: "y", y: "confirmed", stroke: () => "confirmed", strokeWidth: 2.2 }),
         Plot.dot(has("confirmed"), { x: "y", y: "confirmed", fill: () => "confirmed", symbol: "circle", r: 4 }),
+        Plot.dot(bins.filter((b) => known(b.left)), { x: "y", y: "left", stroke: "#888", fill: "#fff", symbol: "circle", r: 3.5, title: (b) => `y ${b.y.toFixed(2)} mm: ${gi(b.left)}, left out of the misfit` }),
         Plot.tip(bins.filter((b) => known(b.confirmed) || known(b.predicted)), Plot.pointerX({ x: "y", y: (b) => b.confirmed ?? b.predicted, title: tip })),
       ],
     });
@@ -226,7 +227,7 @@
 
   section("figures", "Gradation", h("div", { class: "grid" },
     figure("w12", "From the partition to the layer", "Plan view to scale: chambers A (blue) and B (orange) in the dispenser, the land that the blade crosses, and the GI of the layer on the platform. Dashed: the part's footprint, where everything is judged.", whole_plan),
-    bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.` : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
+    bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
     bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third, with 95 % error bars; shaded: tolerance (on the rms over the bins).", drift_figure) : null,
     map ? figure("w6", "GI over the platform", `Cells of ${mm(map.x_m.length > 1 ? map.x_m[1] - map.x_m[0] : null)} mm, ${map.of}. Dashed: the part's footprint. Grey: no powder.`, map_figure) : null,
     origin ? figure("w6", "Where the powder comes from", `Share of the laid solid by place in the dispenser and on the platform (${origin.layers} map layer${origin.layers === 1 ? "" : "s"}). A layer that takes the same mixture of places at every x has no drift.`, origin_figure) : null,

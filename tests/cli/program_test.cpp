@@ -49,7 +49,8 @@ class Program : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    Outcome run(const std::vector<std::string>& arguments) const {
+    /// `before`: words in front of the program, such as "timeout 2 ".
+    Outcome run(const std::vector<std::string>& arguments, const std::string& before = "") const {
         std::string command = "cd " + quoted((folder_ / "work").string()) +
                               " && XDG_CACHE_HOME=" + quoted((folder_ / "cache").string()) + " " +
                               quoted(GRADWRIGHT_PROGRAM);
@@ -300,6 +301,34 @@ TEST_F(Program, evaluate_takes_the_design_of_a_result) {
     EXPECT_EQ(bad.code, 3);
     EXPECT_THAT(bad.err, HasSubstr("at least two points"));
     EXPECT_THAT(bad.err, HasSubstr("dosage_factor"));
+}
+
+TEST_F(Program, a_signal_ends_a_design_with_130_and_whole_files) {
+    // The example packs for minutes: the signal always comes before the end.
+    for (const char* signal : {"INT", "TERM"}) {
+        const Outcome outcome =
+            run({"design", kLinear, "--cache", "none", "--threads", "1", "--json", "--out", signal},
+                std::string("timeout --preserve-status --signal=") + signal + " 2 ");
+        EXPECT_EQ(outcome.code, 130) << outcome.err;
+        const json object = json::parse(outcome.out);
+        EXPECT_EQ(object["termination"], "interrupted");
+        EXPECT_EQ(object["target_met"], false);
+        EXPECT_EQ(json::parse(content(folder_ / "work" / signal / "result.json")), object);
+    }
+}
+
+TEST_F(Program, a_forced_design_leaves_nothing_of_the_earlier_one_and_touches_no_other_file) {
+    const fs::path out = folder_ / "work" / "out";
+    fs::create_directories(out / "journal");
+    for (const char* name : {"journal/000001_full.json", "particles_0007.vtkhdf"})
+        std::ofstream(out / name) << "old";
+    for (const char* name : {"journal/notes.txt", "thesis.tex"}) std::ofstream(out / name) << "mine";
+    run({"design", kLinear, "--cache", "none", "--threads", "1", "--quiet", "--out", "out", "--force"},
+        "timeout --preserve-status --signal=INT 1 ");
+    EXPECT_FALSE(fs::exists(out / "journal/000001_full.json"));
+    EXPECT_FALSE(fs::exists(out / "particles_0007.vtkhdf"));
+    EXPECT_TRUE(fs::exists(out / "journal/notes.txt"));
+    EXPECT_TRUE(fs::exists(out / "thesis.tex"));
 }
 
 }  // namespace
