@@ -1,22 +1,13 @@
-// Settled beds on disk: one file per bed, key = every number that shapes the bed. Written aside, synced, renamed; a file whose
-// length, key or checksum does not fit is made anew.
-#include <fcntl.h>
+// Settled beds on disk: key = every number that shapes the bed.
 #include <omp.h>
-#include <unistd.h>
-
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "dem/bed.h"
+#include "dem/cache_file.h"
 
 namespace gradwright {
 namespace {
-
-constexpr int kEngineFormat = 2;  // raise when the engine makes other beds from the same scene
 
 std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
     Scene s = scene;  // what the bed does not depend on is blanked, so that other lands and gaps find the same bed
@@ -32,29 +23,8 @@ std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
     return text;
 }
 
-template <class T>
-void put(std::string& to, const std::vector<T>& values) {
-    const std::uint64_t count = values.size();
-    to.append(reinterpret_cast<const char*>(&count), sizeof count);
-    to.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
-}
-
-template <class T>
-bool take(const std::string& from, std::size_t& at, std::vector<T>& values) {
-    std::uint64_t count = 0;
-    if (at + sizeof count > from.size()) return false;
-    std::memcpy(&count, from.data() + at, sizeof count);
-    at += sizeof count;
-    if (count > (from.size() - at) / sizeof(T)) return false;
-    values.resize(count);
-    std::memcpy(values.data(), from.data() + at, count * sizeof(T));
-    at += count * sizeof(T);
-    return true;
-}
-
-std::string pack_bytes(const Bed& bed, const std::string& key) {
+std::string pack_bytes(const Bed& bed) {
     std::string out;
-    put(out, std::vector<char>(key.begin(), key.end()));
     put(out, bed.x);
     put(out, bed.y);
     put(out, bed.z);
@@ -64,15 +34,12 @@ std::string pack_bytes(const Bed& bed, const std::string& key) {
     put(out, std::vector<double>{f.packing_fraction, f.mean_coordination, f.max_overlap_ratio, f.speed_number, f.carried_weight_ratio,
                                  static_cast<double>(f.steps), f.seconds_cold});
     put(out, f.made_d10_d50_d90);
-    return out + text_hash(out);
+    return out;
 }
 
-bool unpack(const std::string& bytes, const std::string& key, Bed& bed) {
-    if (bytes.size() < 16 || text_hash(bytes.substr(0, bytes.size() - 16)) != bytes.substr(bytes.size() - 16)) return false;
+bool unpack(const std::string& bytes, Bed& bed) {
     std::size_t at = 0;
-    std::vector<char> stored;
     std::vector<double> facts;
-    if (!take(bytes, at, stored) || std::string(stored.begin(), stored.end()) != key) return false;
     if (!take(bytes, at, bed.x) || !take(bytes, at, bed.y) || !take(bytes, at, bed.z) || !take(bytes, at, bed.radius) ||
         !take(bytes, at, bed.material) || !take(bytes, at, facts) || !take(bytes, at, bed.facts.made_d10_d50_d90) || facts.size() != 7)
         return false;
@@ -94,40 +61,16 @@ Bed cached_bed(const Scene& scene, const PartitionCurve* partition, const Spread
     if (options.cache_folder.empty()) return pack_bed(scene, partition, options, health);
     const double start = omp_get_wtime();
     const std::string key = bed_key(scene, partition);
-    const std::filesystem::path folder = options.cache_folder, file = folder / ("bed-" + text_hash(key) + ".bin");
-    {
-        std::ifstream in(file, std::ios::binary);
-        std::stringstream bytes;
-        if (in) bytes << in.rdbuf();
-        Bed bed;
-        if (in && unpack(bytes.str(), key, bed)) {
-            bed.facts.seconds = omp_get_wtime() - start;
-            health.status = "ok";
-            return bed;
-        }
+    Bed bed;
+    if (const auto bytes = read_cache(options.cache_folder, "bed", key); bytes && unpack(*bytes, bed)) {
+        bed.facts.seconds = omp_get_wtime() - start;
+        health.status = "ok";
+        return bed;
     }
-    Bed bed = pack_bed(scene, partition, options, health);
-    if (!health.ok()) return bed;
-    // A cache that cannot be written costs time, not the run.
-    std::error_code ignored;
-    std::filesystem::create_directories(folder, ignored);
-    const std::string bytes = pack_bytes(bed, key), aside = fmt::format("{}.{}.part", file.string(), ::getpid());
-    const int fd = ::open(aside.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
-    bool written = fd >= 0;
-    for (std::size_t at = 0; written && at < bytes.size();) {
-        const ssize_t n = ::write(fd, bytes.data() + at, bytes.size() - at);
-        written = n > 0;
-        at += static_cast<std::size_t>(n > 0 ? n : 0);
-    }
-    if (fd >= 0) {
-        written = ::fsync(fd) == 0 && written;
-        ::close(fd);
-    }
-    if (written) std::filesystem::rename(aside, file, ignored);
-    else {
-        std::filesystem::remove(aside, ignored);
-        health.warnings.push_back(fmt::format("the bed cache {} cannot be written; beds are packed anew each time", folder.string()));
-    }
+    bed = pack_bed(scene, partition, options, health);
+    if (health.ok() && !write_cache(options.cache_folder, "bed", key, pack_bytes(bed)))
+        health.warnings.push_back(
+            fmt::format("the cache {} cannot be written; beds are packed anew each time", options.cache_folder));
     return bed;
 }
 

@@ -155,7 +155,7 @@ bool target_rises(const Study& study) {
 }
 
 std::vector<PlanPoint> closed_form_curve(const Study& study, Orientation orientation,
-                                         const std::function<double(double share)>& quantile) {
+                                         const std::function<double(double share)>& quantile, Fold fold) {
     const bool platform_side = orientation.rising != orientation.a_above;
     const double width = study.dispenser_width;
     const int steps = 800;  // in y: 4 um on a 1.6 mm dispenser, under a tenth of a grain
@@ -167,7 +167,11 @@ std::vector<PlanPoint> closed_form_curve(const Study& study, Orientation orienta
     std::vector<PlanPoint> curve;
     for (int i = 0; i < samples; ++i) {
         const double q = (i + 0.5) / samples;
-        const double share_above = platform_side ? 1 - q : q;
+        const double from_middle = 2 * std::abs(q - 0.5);
+        const double share_above = fold == Fold::valley  ? from_middle
+                                   : fold == Fold::ridge ? 1 - from_middle
+                                   : platform_side       ? 1 - q
+                                                         : q;
         const double share = orientation.a_above ? share_above : 1 - share_above;
         // first y where the rising form of g reaches the share: inverse of a clamped, possibly stepping
         // function

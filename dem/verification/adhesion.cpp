@@ -1,7 +1,7 @@
 // V5, V6: the JKR contact, evaluated directly, pulled apart quasi-statically by the engine, and in impacts.
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "dem/verification/laboratory.h"
 
@@ -27,11 +27,17 @@ constexpr AdhesiveRow kRows[] = {
 struct Jkr {
     double e_star, r_star, gamma;
     double overlap(double a) const { return a * a / r_star - std::sqrt(2 * kPi * gamma * a / e_star); }
-    double force(double a) const { return 4 * e_star * a * a * a / (3 * r_star) - std::sqrt(8 * kPi * e_star * gamma * a * a * a); }
+    double force(double a) const {
+        return 4 * e_star * a * a * a / (3 * r_star) - std::sqrt(8 * kPi * e_star * gamma * a * a * a);
+    }
     double pull_off() const { return 1.5 * kPi * r_star * gamma; }
-    double tear_off_overlap() const { return -std::cbrt(3 * pull_off() * pull_off() / (16 * r_star * e_star * e_star)); }
+    double tear_off_overlap() const {
+        return -std::cbrt(3 * pull_off() * pull_off() / (16 * r_star * e_star * e_star));
+    }
     double tear_off_radius() const { return std::cbrt(kPi * gamma * r_star * r_star / (8 * e_star)); }
-    double hysteresis_work() const { return 7.09220 * std::cbrt(std::pow(gamma, 5) * std::pow(r_star, 4) / (e_star * e_star)); }
+    double hysteresis_work() const {
+        return 7.09220 * std::cbrt(std::pow(gamma, 5) * std::pow(r_star, 4) / (e_star * e_star));
+    }
     /// Larger root a of overlap(a) = delta, by bisection: shares nothing with the law's Newton iteration.
     double radius_at(double delta) const {
         double lo = tear_off_radius(), hi = 2 * lo;
@@ -45,12 +51,16 @@ struct Jkr {
 };
 
 Jkr curve_of(const AdhesiveRow& row) {
-    return {effective_modulus(grain_material(8000, row.youngs_modulus, 0.3), false), row.radius_1 * row.radius_2 / (row.radius_1 + row.radius_2),
-            row.work_of_adhesion};
+    return {effective_modulus(grain_material(8000, row.youngs_modulus, 0.3), false),
+            row.radius_1 * row.radius_2 / (row.radius_1 + row.radius_2), row.work_of_adhesion};
 }
 
-double first_lane(double v) { return v; }
-double first_lane(F8 v) { return static_cast<double>(v[0]); }
+double first_lane(double v) {
+    return v;
+}
+double first_lane(F8 v) {
+    return static_cast<double>(v[0]);
+}
 
 struct Pull {
     double force = 0;
@@ -84,7 +94,8 @@ void law_cases(VerificationCases& out, const VerificationOptions& options, doubl
         const Jkr jkr = curve_of(row);
         const double pull_off = jkr.pull_off();
         auto force = [&](double overlap) { return law_at<T>(jkr, options.fault, overlap, true).force; };
-        // In float the overlap's own rounding is worth sqrt(6e-8) of the contact radius right at the tear-off's double root.
+        // In float the overlap's own rounding is worth sqrt(6e-8) of the contact radius right at the
+        // tear-off's double root.
         const double a_first = jkr.tear_off_radius() * (fast ? 1.01 : 1.0001), a_last = 6 * jkr.radius_at(0);
         double worst = 0, worst_expected = 0, worst_obtained = 0, lowest = 0;
         for (int k = 0; k <= 2000; ++k) {
@@ -94,38 +105,45 @@ void law_cases(VerificationCases& out, const VerificationOptions& options, doubl
             lowest = std::min(lowest, obtained);
             if (!(error <= worst)) worst = error, worst_expected = expected, worst_obtained = obtained;
         }
-        VerificationCase c = judged("V5", row.name, "worst force of 2001 on the curve [N], error of max(|F|, F_po)", worst_expected,
-                                    worst_obtained, 1, tolerance, "JKR 1971, parametric in a");
+        VerificationCase c =
+            judged("V5", row.name, "worst force of 2001 on the curve [N], error of max(|F|, F_po)",
+                   worst_expected, worst_obtained, 1, tolerance, "JKR 1971, parametric in a");
         c.error = worst;
         c.pass = worst <= tolerance;
         out.push_back(c);
-        out.push_back(judged("V5", row.name, "force when made, overlap 0 [N]", -8.0 / 9.0 * pull_off, force(0), pull_off, tolerance, "-8/9 F_po"));
+        out.push_back(judged("V5", row.name, "force when made, overlap 0 [N]", -8.0 / 9.0 * pull_off,
+                             force(0), pull_off, tolerance, "-8/9 F_po"));
         // 2001 points miss the flat minimum by less than 1e-6 of it
-        out.push_back(judged("V5", row.name, "pull-off force [N]", -pull_off, lowest, pull_off, std::max(tolerance, 2e-6), "F_po = 3/2 pi R* Gamma"));
+        out.push_back(judged("V5", row.name, "pull-off force [N]", -pull_off, lowest, pull_off,
+                             std::max(tolerance, 2e-6), "F_po = 3/2 pi R* Gamma"));
         double in = 0, gone = 2 * jkr.tear_off_overlap();
         for (int k = 0; k < 100; ++k) {
             const double middle = 0.5 * (in + gone);
             (law_at<T>(jkr, options.fault, middle, true).alive ? in : gone) = middle;
         }
-        out.push_back(judged("V5", row.name, "tear-off overlap [m]", jkr.tear_off_overlap(), in, jkr.tear_off_overlap(), tolerance,
-                             "-(3 F_po^2/(16 R* E*^2))^(1/3)"));
+        out.push_back(judged("V5", row.name, "tear-off overlap [m]", jkr.tear_off_overlap(), in,
+                             jkr.tear_off_overlap(), tolerance, "-(3 F_po^2/(16 R* E*^2))^(1/3)"));
         const bool made_early = law_at<T>(jkr, options.fault, 0.5 * jkr.tear_off_overlap(), false).alive;
-        out.push_back(judged("V5", row.name, "contacts made before touch", 0, made_early, 1, 0, "made at overlap 0"));
-        // Work of the return from touch to tear-off; delta = delta_c (1 - t^2) takes out the root singularity at the end.
+        out.push_back(
+            judged("V5", row.name, "contacts made before touch", 0, made_early, 1, 0, "made at overlap 0"));
+        // Work of the return from touch to tear-off; delta = delta_c (1 - t^2) takes out the root singularity
+        // at the end.
         const int steps = 4000;
         double work = 0;
         for (int k = 0; k < steps; ++k) {
             const double t = (k + 0.5) / steps;
-            work -= force(jkr.tear_off_overlap() * (1 - t * t)) * std::fabs(jkr.tear_off_overlap()) * 2 * t / steps;
+            work -= force(jkr.tear_off_overlap() * (1 - t * t)) * std::fabs(jkr.tear_off_overlap()) * 2 * t /
+                    steps;
         }
         // the closed form's constant has six digits
-        out.push_back(judged("V5", row.name, "work of one make-and-break [J]", jkr.hysteresis_work(), work, jkr.hysteresis_work(),
-                             std::max(tolerance, 2e-6), "7.09220 (Gamma^5 R*^4/E*^2)^(1/3)"));
+        out.push_back(judged("V5", row.name, "work of one make-and-break [J]", jkr.hysteresis_work(), work,
+                             jkr.hysteresis_work(), std::max(tolerance, 2e-6),
+                             "7.09220 (Gamma^5 R*^4/E*^2)^(1/3)"));
     }
 }
 
-/// Pushes a heavy grain onto a fixed one and pulls it off again, so slowly and with so much inertia that its way is given; the
-/// force is what the engine reports on the fixed grain.
+/// Pushes a heavy grain onto a fixed one and pulls it off again, so slowly and with so much inertia that its
+/// way is given; the force is what the engine reports on the fixed grain.
 void engine_cases(VerificationCases& out, const VerificationOptions& options, double tolerance) {
     for (const AdhesiveRow& row : kRows) {
         const Jkr jkr = curve_of(row);
@@ -134,22 +152,25 @@ void engine_cases(VerificationCases& out, const VerificationOptions& options, do
         interaction.work_of_adhesion = row.work_of_adhesion;
         const int per_tear_off = 4000;
         const double speed = 1e-3, dt = tear_off / per_tear_off / speed;
-        Engine engine(laboratory_options(options, grain_material(1e20, row.youngs_modulus, 0.3), interaction, dt));
+        Engine engine(
+            laboratory_options(options, grain_material(1e20, row.youngs_modulus, 0.3), interaction, dt));
         engine.add_grain({.radius = row.radius_1, .fixed = true});
         const double gap = 0.25 * tear_off;
         engine.add_grain({.x = row.radius_1 + row.radius_2 + gap, .vx = -speed, .radius = row.radius_2});
-        double worst = 0, worst_expected = 0, worst_obtained = 0, work = 0, before_overlap = 0, before_force = 0, last = 0;
+        double worst = 0, worst_expected = 0, worst_obtained = 0, work = 0, before_overlap = 0,
+               before_force = 0, last = 0;
         bool made = false, back = false;
         for (int step = 0; step < 12 * per_tear_off; ++step) {
             const double overlap = row.radius_1 + row.radius_2 - engine.state().x[index_of(engine, 1)];
-            engine.advance(1);  // evaluates the force at the overlap just read
+            engine.advance(1);                                // evaluates the force at the overlap just read
             const double force = -engine.force_on_fixed().x;  // > 0: repulsion
             made = made || overlap >= 0;
             const bool gone = back && engine.contacts() == 0;
             const double expected = made && !gone ? jkr.force(jkr.radius_at(overlap)) : 0;
             // the last thousandth before tear-off hangs on the overlap's own rounding
             if (!gone && !(back && overlap < -0.999 * tear_off)) {
-                const double error = std::fabs(force - expected) / std::max(std::fabs(expected), jkr.pull_off());
+                const double error =
+                    std::fabs(force - expected) / std::max(std::fabs(expected), jkr.pull_off());
                 if (!(error <= worst)) worst = error, worst_expected = expected, worst_obtained = force;
             }
             if (step > 0) work += 0.5 * (force + before_force) * (overlap - before_overlap);
@@ -163,15 +184,19 @@ void engine_cases(VerificationCases& out, const VerificationOptions& options, do
                 back = true;
             }
         }
-        VerificationCase c = judged("V5", fmt::format("{}, pulled by the engine", row.name), "worst force of the way [N], error of max(|F|, F_po)",
-                                    worst_expected, worst_obtained, 1, tolerance, "JKR 1971, parametric in a");
+        VerificationCase c = judged("V5", fmt::format("{}, pulled by the engine", row.name),
+                                    "worst force of the way [N], error of max(|F|, F_po)", worst_expected,
+                                    worst_obtained, 1, tolerance, "JKR 1971, parametric in a");
         c.error = worst;
         c.pass = worst <= tolerance;
         out.push_back(c);
-        out.push_back(judged("V5", fmt::format("{}, pulled by the engine", row.name), "overlap when parted [m]", -tear_off, last, tear_off,
-                             1.5 / per_tear_off, "tear-off overlap, one step"));
-        out.push_back(judged("V5", fmt::format("{}, pulled by the engine", row.name), "work of one make-and-break [J]", jkr.hysteresis_work(), work,
-                             jkr.hysteresis_work(), 2.0 / per_tear_off, "7.09220 (Gamma^5 R*^4/E*^2)^(1/3), two jumps of one step"));
+        out.push_back(judged("V5", fmt::format("{}, pulled by the engine", row.name),
+                             "overlap when parted [m]", -tear_off, last, tear_off, 1.5 / per_tear_off,
+                             "tear-off overlap, one step"));
+        out.push_back(judged("V5", fmt::format("{}, pulled by the engine", row.name),
+                             "work of one make-and-break [J]", jkr.hysteresis_work(), work,
+                             jkr.hysteresis_work(), 2.0 / per_tear_off,
+                             "7.09220 (Gamma^5 R*^4/E*^2)^(1/3), two jumps of one step"));
     }
 }
 
@@ -187,9 +212,12 @@ bool sticks(const VerificationOptions& options, double restitution, double speed
     bool touched = false, parting = false;
     for (int block = 0; block < 4000; ++block) {
         engine.advance(10);
-        if (engine.contacts() > 0) touched = true;
-        else if (touched) return false;
-        const double closing = engine.state().vx[index_of(engine, 0)] - engine.state().vx[index_of(engine, 1)];
+        if (engine.contacts() > 0)
+            touched = true;
+        else if (touched)
+            return false;
+        const double closing =
+            engine.state().vx[index_of(engine, 0)] - engine.state().vx[index_of(engine, 1)];
         if (touched && closing < 0) parting = true;
         if (parting && closing > 0) return true;  // pulled back before tear-off
     }
@@ -201,8 +229,10 @@ bool sticks(const VerificationOptions& options, double restitution, double speed
 VerificationCases verify_jkr_curve(const VerificationOptions& options) {
     VerificationCases out;
     const double tolerance = options.precision == Precision::double_law ? 1e-6 : 1e-4;
-    if (options.precision == Precision::double_law) law_cases<double>(out, options, tolerance);
-    else law_cases<F8>(out, options, tolerance);
+    if (options.precision == Precision::double_law)
+        law_cases<double>(out, options, tolerance);
+    else
+        law_cases<F8>(out, options, tolerance);
     engine_cases(out, options, tolerance);
     return out;
 }
@@ -219,8 +249,10 @@ VerificationCases verify_sticking_speed(const VerificationOptions& options) {
             const double middle = 0.5 * (lo + hi);
             (sticks(options, e, middle) ? lo : hi) = middle;
         }
-        out.push_back(judged("V6", fmt::format("two grains of 40 um, scaled adhesion, e = {:g}", e), "sticking speed [m/s]", expected, 0.5 * (lo + hi),
-                             expected, 0.01, e == 1 ? "sqrt(2 W/m*), W = 7.09220 (Gamma^5 R*^4/E*^2)^(1/3)" : "4.428 times the elastic one (integrated law)"));
+        out.push_back(judged("V6", fmt::format("two grains of 40 um, scaled adhesion, e = {:g}", e),
+                             "sticking speed [m/s]", expected, 0.5 * (lo + hi), expected, 0.01,
+                             e == 1 ? "sqrt(2 W/m*), W = 7.09220 (Gamma^5 R*^4/E*^2)^(1/3)"
+                                    : "4.428 times the elastic one (integrated law)"));
     }
     return out;
 }

@@ -1,9 +1,9 @@
 // V10, V11: many grains: conservation, and what the lists find.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "dem/random.h"
 #include "dem/verification/laboratory.h"
@@ -21,7 +21,8 @@ Interaction powder(double adhesion, RollingModel rolling) {
     return i;
 }
 
-/// Grains of three sizes on a loose jittered lattice of n^3, moving towards the middle and turning. `period` closes y exactly.
+/// Grains of three sizes on a loose jittered lattice of n^3, moving towards the middle and turning. `period`
+/// closes y exactly.
 void add_cloud(Engine& engine, int n, double speed, double spacing, std::uint64_t seed) {
     Random random(seed);
     for (int i = 0; i < n; ++i)
@@ -29,7 +30,9 @@ void add_cloud(Engine& engine, int n, double speed, double spacing, std::uint64_
             for (int k = 0; k < n; ++k) {
                 GrainSpec g;
                 g.radius = kRadius * (1 - 0.2 * static_cast<double>(random.below(3)));
-                auto place = [&](int cell) { return spacing * (cell + 0.5 + 0.06 * (random.uniform() - 0.5)); };
+                auto place = [&](int cell) {
+                    return spacing * (cell + 0.5 + 0.06 * (random.uniform() - 0.5));
+                };
                 g.x = place(i), g.y = place(j), g.z = place(k);
                 const double middle = 0.5 * n * spacing;
                 g.vx = speed * ((middle - g.x) / middle + 0.5 * random.uniform());
@@ -40,8 +43,8 @@ void add_cloud(Engine& engine, int n, double speed, double spacing, std::uint64_
             }
 }
 
-/// Momentum and angular momentum about the origin, and the sums of their parts' magnitudes. Half-step velocities with whole-step
-/// positions: what leapfrog keeps exactly.
+/// Momentum and angular momentum about the origin, and the sums of their parts' magnitudes. Half-step
+/// velocities with whole-step positions: what leapfrog keeps exactly.
 struct Momenta {
     std::array<double, 6> sum{};
     double linear_scale = 0, angular_scale = 0;
@@ -90,7 +93,8 @@ VerificationCases verify_conservation(const VerificationOptions& options) {
     };
     for (const Row& row : {Row{"64 grains, Hertz, constant torque", 0, RollingModel::constant_torque},
                            Row{"64 grains, JKR, spring rolling", 5e-4, RollingModel::spring}}) {
-        Engine engine(laboratory_options(options, grain_material(8000, 2e7, 0.3), powder(row.adhesion, row.rolling), kTimeStep));
+        Engine engine(laboratory_options(options, grain_material(8000, 2e7, 0.3),
+                                         powder(row.adhesion, row.rolling), kTimeStep));
         add_cloud(engine, 4, 0.1, 2.1 * kRadius, 3);
         const Momenta before = momenta(engine.state());
         std::size_t seen = 0;
@@ -105,10 +109,12 @@ VerificationCases verify_conservation(const VerificationOptions& options) {
             angular = std::hypot(angular, after.sum[k + 3] - before.sum[k + 3]);
         }
         const auto name = fmt::format("{}, {} contacts at 150 instants", row.name, seen);
-        out.push_back(judged("V10", name, "change of momentum / sum of magnitudes", 0, linear / before.linear_scale, 1, tolerance, "action and reaction"));
-        out.push_back(judged("V10", name, "change of angular momentum / sum of magnitudes", 0, angular / before.angular_scale, 1, tolerance,
-                             "arms meet in the contact point"));
-        out.push_back(judged("V10", name, "contacts were made", 1, seen > 200, 1, 0, "else nothing was shown"));
+        out.push_back(judged("V10", name, "change of momentum / sum of magnitudes", 0,
+                             linear / before.linear_scale, 1, tolerance, "action and reaction"));
+        out.push_back(judged("V10", name, "change of angular momentum / sum of magnitudes", 0,
+                             angular / before.angular_scale, 1, tolerance, "arms meet in the contact point"));
+        out.push_back(
+            judged("V10", name, "contacts were made", 1, seen > 200, 1, 0, "else nothing was shown"));
     }
     return out;
 }
@@ -119,7 +125,8 @@ VerificationCases verify_neighbours(const VerificationOptions& options) {
         const char* sides = periodic ? "periodic in y" : "free";
         const int n = 7;
         const double spacing = 2.1 * kRadius;
-        EngineOptions eo = laboratory_options(options, grain_material(8000, 2e7, 0.3), powder(0, RollingModel::constant_torque), kTimeStep);
+        EngineOptions eo = laboratory_options(options, grain_material(8000, 2e7, 0.3),
+                                              powder(0, RollingModel::constant_torque), kTimeStep);
         if (periodic) eo.period_y = n * spacing;
         Engine engine(eo);
         add_cloud(engine, n, 0.3, spacing, 5);
@@ -131,9 +138,12 @@ VerificationCases verify_neighbours(const VerificationOptions& options) {
             wrong += engine.contacts() != expected;
             compared += expected;
         }
-        out.push_back(judged("V11", fmt::format("343 grains, {}, {} contacts at 150 instants", sides, compared), "instants with other contacts than all pairs give", 0,
+        out.push_back(judged("V11",
+                             fmt::format("343 grains, {}, {} contacts at 150 instants", sides, compared),
+                             "instants with other contacts than all pairs give", 0,
                              static_cast<double>(wrong), 1, 0, "search over all pairs"));
-        out.push_back(judged("V11", fmt::format("343 grains, {}", sides), "contacts were made", 1, compared > 1000, 1, 0, "else nothing was shown"));
+        out.push_back(judged("V11", fmt::format("343 grains, {}", sides), "contacts were made", 1,
+                             compared > 1000, 1, 0, "else nothing was shown"));
 
         std::string first;
         for (const int threads : {1, 2, 3, 8}) {
@@ -145,10 +155,12 @@ VerificationCases verify_neighbours(const VerificationOptions& options) {
             add_cloud(cloud, 12, 0.3, spacing, 11);
             cloud.advance(150);
             const std::string hash = cloud.state_hash();
-            if (first.empty()) first = hash;
+            if (first.empty())
+                first = hash;
             else
-                out.push_back(judged("V11", fmt::format("1728 grains, {}, {} threads", sides, threads), "state hash as on one thread (1 = equal)", 1,
-                                     hash == first, 1, 0, "sums in fixed order"));
+                out.push_back(judged("V11", fmt::format("1728 grains, {}, {} threads", sides, threads),
+                                     "state hash as on one thread (1 = equal)", 1, hash == first, 1, 0,
+                                     "sums in fixed order"));
         }
     }
     return out;

@@ -1,9 +1,9 @@
 // V9, V13: forces as slopes of energies, what the step does to the energy, and the order of the step.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <functional>
-
-#include <fmt/format.h>
 
 #include "dem/random.h"
 #include "dem/verification/laboratory.h"
@@ -13,7 +13,9 @@ using namespace verification;
 namespace {
 
 constexpr double kRadius = 20e-6;
-Material metal() { return grain_material(8000, 2e7, 0.3); }
+Material metal() {
+    return grain_material(8000, 2e7, 0.3);
+}
 
 /// Two like grains: overlap, closing speed and energies at an instant.
 struct Probe {
@@ -25,7 +27,8 @@ double hertz_energy(double e_star, double r_star, double overlap) {
 }
 
 /// Two like grains from `overlap` at closing `speed`, after `time`, which must be a whole number of steps.
-Probe pair_after(const VerificationOptions& options, double restitution, double overlap, double speed, double dt, long steps) {
+Probe pair_after(const VerificationOptions& options, double restitution, double overlap, double speed,
+                 double dt, long steps) {
     Interaction interaction = bare_interaction();
     interaction.coefficient_of_restitution = restitution;
     Engine engine(laboratory_options(options, metal(), interaction, dt));
@@ -47,7 +50,8 @@ Probe pair_after(const VerificationOptions& options, double restitution, double 
     return p;
 }
 
-/// Force of the engine between a fixed and a mobile grain at an overlap (contact made first when it is adhesive).
+/// Force of the engine between a fixed and a mobile grain at an overlap (contact made first when it is
+/// adhesive).
 class ForceProbe {
   public:
     ForceProbe(const VerificationOptions& options, double work_of_adhesion) : options_(options) {
@@ -71,17 +75,22 @@ class ForceProbe {
     Interaction interaction_;
 };
 
-double order_of(double coarse, double middle, double fine) { return std::log2(std::fabs(coarse - middle) / std::fabs(middle - fine)); }
+double order_of(double coarse, double middle, double fine) {
+    return std::log2(std::fabs(coarse - middle) / std::fabs(middle - fine));
+}
 
 /// A case that asks for at least a bound.
-VerificationCase at_least(std::string id, std::string name, std::string quantity, double bound, double obtained, std::string source) {
-    VerificationCase c = judged(std::move(id), std::move(name), std::move(quantity), bound, obtained, 1, 0, std::move(source));
+VerificationCase at_least(std::string id, std::string name, std::string quantity, double bound,
+                          double obtained, std::string source) {
+    VerificationCase c =
+        judged(std::move(id), std::move(name), std::move(quantity), bound, obtained, 1, 0, std::move(source));
     c.error = std::max(0.0, bound - obtained);
     c.pass = obtained >= bound;
     return c;
 }
 
-/// Eight grains in a box without gravity: largest rise of the energy between instants with no contact open, over the first energy.
+/// Eight grains in a box without gravity: largest rise of the energy between instants with no contact open,
+/// over the first energy.
 double largest_energy_rise(const VerificationOptions& options, double restitution, double friction) {
     Interaction interaction = bare_interaction();
     interaction.coefficient_of_restitution = restitution;
@@ -91,7 +100,10 @@ double largest_energy_rise(const VerificationOptions& options, double restitutio
     Random random(7);
     const double side = 6 * kRadius;
     for (int k = 0; k < 8; ++k) {
-        GrainSpec g{.x = side * (k & 1 ? 0.75 : 0.25), .y = side * (k & 2 ? 0.75 : 0.25), .z = side * (k & 4 ? 0.75 : 0.25), .radius = kRadius};
+        GrainSpec g{.x = side * (k & 1 ? 0.75 : 0.25),
+                    .y = side * (k & 2 ? 0.75 : 0.25),
+                    .z = side * (k & 4 ? 0.75 : 0.25),
+                    .radius = kRadius};
         for (double* v : {&g.vx, &g.vy, &g.vz}) *v = 0.2 * (random.uniform() - 0.5);
         for (double* w : {&g.wx, &g.wy, &g.wz}) *w = 0.2 * (random.uniform() - 0.5) / kRadius;
         engine.add_grain(g);
@@ -130,41 +142,53 @@ VerificationCases verify_energy(const VerificationOptions& options) {
         const ForceProbe probe(options, 0);
         for (const double ratio : {1e-4, 1e-3, 1e-2}) {
             const double d = ratio * kRadius, h = 1e-4 * d;
-            const double slope = (hertz_energy(e_star, r_star, d + h) - hertz_energy(e_star, r_star, d - h)) / (2 * h);
-            out.push_back(judged("V9", fmt::format("Hertz, overlap {:g} of the radius", ratio), "force as slope of the energy [N]", slope, probe.force(d),
-                                 slope, tolerance, "F = dE/d delta"));
+            const double slope =
+                (hertz_energy(e_star, r_star, d + h) - hertz_energy(e_star, r_star, d - h)) / (2 * h);
+            out.push_back(judged("V9", fmt::format("Hertz, overlap {:g} of the radius", ratio),
+                                 "force as slope of the energy [N]", slope, probe.force(d), slope, tolerance,
+                                 "F = dE/d delta"));
         }
     }
     {
         const double gamma = 5.02377286302e-4, pull_off = 1.5 * kPi * r_star * gamma;
-        const double a_s = std::cbrt(2 * kPi * gamma * r_star * r_star / e_star), d_s = a_s * a_s / r_star, f_s = 16.0 / 9.0 * pull_off;
-        auto energy = [&](double s) { return f_s * d_s * (0.4 * std::pow(s, 10) - std::pow(s, 7) + 0.375 * std::pow(s, 4)); };
+        const double a_s = std::cbrt(2 * kPi * gamma * r_star * r_star / e_star), d_s = a_s * a_s / r_star,
+                     f_s = 16.0 / 9.0 * pull_off;
+        auto energy = [&](double s) {
+            return f_s * d_s * (0.4 * std::pow(s, 10) - std::pow(s, 7) + 0.375 * std::pow(s, 4));
+        };
         auto overlap = [&](double s) { return d_s * (std::pow(s, 4) - s); };
         const ForceProbe probe(options, gamma);
         for (const double s : {0.7, 0.9, 1.0, 1.3, 2.0}) {
             const double h = 1e-4 * s;
             const double slope = (energy(s + h) - energy(s - h)) / (overlap(s + h) - overlap(s - h));
-            out.push_back(judged("V9", fmt::format("JKR, contact radius {:g} of its scale", s * s), "force as slope of the energy [N], error of max(|F|, F_po)",
-                                 slope, probe.force(overlap(s)), std::max(std::fabs(slope), pull_off), tolerance, "F = dE/d delta"));
+            out.push_back(judged("V9", fmt::format("JKR, contact radius {:g} of its scale", s * s),
+                                 "force as slope of the energy [N], error of max(|F|, F_po)", slope,
+                                 probe.force(overlap(s)), std::max(std::fabs(slope), pull_off), tolerance,
+                                 "F = dE/d delta"));
         }
     }
-    const double speed = 0.1, contact = hertz_impact(e_star, r_star, 0.5 * sphere_mass(8000, kRadius), speed).contact_time;
+    const double speed = 0.1,
+                 contact = hertz_impact(e_star, r_star, 0.5 * sphere_mass(8000, kRadius), speed).contact_time;
     const double start = 0.5 * 0.5 * sphere_mass(8000, kRadius) * speed * speed;
     if (exact) {
         // Energy error in mid-contact: float leaves nothing to see of it.
         double error[3];
         for (int k = 0; k < 3; ++k) {
             const long steps = 40L << k;
-            error[k] = pair_after(options, 1, 0, speed, 0.5 * contact / static_cast<double>(steps), steps).energy - start;
+            error[k] =
+                pair_after(options, 1, 0, speed, 0.5 * contact / static_cast<double>(steps), steps).energy -
+                start;
         }
         for (int k = 0; k < 2; ++k)
-            out.push_back(judged("V9", fmt::format("impact at e = 1 with {} and {} steps", 40 << k, 80 << k), "energy error over that of half the step", 4,
-                                 error[k] / error[k + 1], 4, 0.1, "second order"));
+            out.push_back(judged("V9", fmt::format("impact at e = 1 with {} and {} steps", 40 << k, 80 << k),
+                                 "energy error over that of half the step", 4, error[k] / error[k + 1], 4,
+                                 0.1, "second order"));
     }
     for (const auto& [e, mu] : {std::pair{0.5, 0.0}, {0.9, 0.0}, {0.8, 0.64}, {0.5, 0.64}}) {
         const double rise = largest_energy_rise(options, e, mu);
-        VerificationCase c = judged("V9", fmt::format("eight grains in a box, e = {:g}, mu = {:g}", e, mu), "largest rise of the energy / first energy", 0,
-                                    rise, 1, exact ? 1e-9 : 1e-6, "dissipation only");
+        VerificationCase c = judged("V9", fmt::format("eight grains in a box, e = {:g}, mu = {:g}", e, mu),
+                                    "largest rise of the energy / first energy", 0, rise, 1,
+                                    exact ? 1e-9 : 1e-6, "dissipation only");
         c.error = std::max(0.0, rise);
         c.pass = rise > -1 && c.error <= c.tolerance;  // -1: never free of contacts, nothing was seen
         out.push_back(c);
@@ -176,22 +200,27 @@ VerificationCases verify_time_step_order(const VerificationOptions& options) {
     VerificationCases out;
     VerificationOptions exact = options;
     exact.precision = Precision::double_law;  // the integrator is one; float would hide its order
-    const double e_star = effective_modulus(metal(), false), r_star = 0.5 * kRadius, m_star = 0.5 * sphere_mass(8000, kRadius);
+    const double e_star = effective_modulus(metal(), false), r_star = 0.5 * kRadius,
+                 m_star = 0.5 * sphere_mass(8000, kRadius);
     const double speed = 0.1;
     const auto elastic = hertz_impact(e_star, r_star, m_star, speed);
     auto order = [&](double restitution, double overlap) {
         double end[3];
         for (int k = 0; k < 3; ++k) {
             const long steps = 400L << k;
-            end[k] = pair_after(exact, restitution, overlap, speed, 0.7 * elastic.contact_time / static_cast<double>(steps), steps).overlap;
+            end[k] = pair_after(exact, restitution, overlap, speed,
+                                0.7 * elastic.contact_time / static_cast<double>(steps), steps)
+                         .overlap;
         }
         return order_of(end[0], end[1], end[2]);
     };
-    out.push_back(at_least("V13", "e = 1, from first touch", "order of the overlap at 0.7 contact times", 1.9, order(1, 0), "velocity Verlet"));
-    out.push_back(at_least("V13", "e = 0.5, started inside contact", "order of the overlap at 0.7 contact times", 1.9, order(0.5, 0.3 * elastic.overlap_max),
-                           "velocity Verlet with predicted velocities"));
-    out.push_back(at_least("V13", "e = 0.5, from first touch", "order of the overlap at 0.7 contact times", 1.2, order(0.5, 0),
-                           "damping force starts as overlap^(1/4)"));
+    out.push_back(at_least("V13", "e = 1, from first touch", "order of the overlap at 0.7 contact times", 1.9,
+                           order(1, 0), "velocity Verlet"));
+    out.push_back(
+        at_least("V13", "e = 0.5, started inside contact", "order of the overlap at 0.7 contact times", 1.9,
+                 order(0.5, 0.3 * elastic.overlap_max), "velocity Verlet with predicted velocities"));
+    out.push_back(at_least("V13", "e = 0.5, from first touch", "order of the overlap at 0.7 contact times",
+                           1.2, order(0.5, 0), "damping force starts as overlap^(1/4)"));
     return out;
 }
 

@@ -18,7 +18,11 @@ ImpactResult run_impact(const VerificationOptions& options, const ImpactSetup& s
 
     Engine engine(laboratory_options(options, s.material, s.interaction, dt));
     const double share_1 = wall ? 1 : m2 / (m1 + m2), share_2 = 1 - share_1;
-    engine.add_grain({.x = -s.radius_1 - gap, .vx = v * share_1, .vy = s.tangential_speed * share_1, .wz = s.spin_1, .radius = s.radius_1});
+    engine.add_grain({.x = -s.radius_1 - gap,
+                      .vx = v * share_1,
+                      .vy = s.tangential_speed * share_1,
+                      .wz = s.spin_1,
+                      .radius = s.radius_1});
     if (wall) {
         Body plane;
         plane.axis = 0;
@@ -27,8 +31,11 @@ ImpactResult run_impact(const VerificationOptions& options, const ImpactSetup& s
         plane.material = 1;
         engine.add_body(plane);
     } else {
-        engine.add_grain(
-            {.x = s.radius_2, .vx = -v * share_2, .vy = -s.tangential_speed * share_2, .wz = s.spin_2, .radius = s.radius_2});
+        engine.add_grain({.x = s.radius_2,
+                          .vx = -v * share_2,
+                          .vy = -s.tangential_speed * share_2,
+                          .wz = s.spin_2,
+                          .radius = s.radius_2});
     }
     auto overlap = [&] {
         const State& g = engine.state();
@@ -58,7 +65,7 @@ ImpactResult run_impact(const VerificationOptions& options, const ImpactSetup& s
         before = now;
     }
     if (end == 0) return out;  // never parted: no rebound
-    engine.advance(2);  // clear of the contact: half-step and whole-step velocities agree
+    engine.advance(2);         // clear of the contact: half-step and whole-step velocities agree
     out.contact_time = end - gap / v;
     const std::size_t a = index_of(engine, 0);
     auto va = engine.velocity(a);

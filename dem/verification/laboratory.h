@@ -1,4 +1,5 @@
-// Small set-ups shared by the rungs: materials, one impact watched step by step, and the judging of a number. Private.
+// Small set-ups shared by the rungs: materials, one impact watched step by step, and the judging of a number.
+// Private.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -12,8 +13,8 @@ namespace gradwright::verification {
 inline constexpr double kPi = 3.14159265358979323846;
 
 /// A case whose error is |obtained - expected| / scale. Not-a-number never passes.
-inline VerificationCase judged(std::string id, std::string name, std::string quantity, double expected, double obtained, double scale,
-                               double tolerance, std::string source) {
+inline VerificationCase judged(std::string id, std::string name, std::string quantity, double expected,
+                               double obtained, double scale, double tolerance, std::string source) {
     VerificationCase c;
     c.id = std::move(id);
     c.name = std::move(name);
@@ -30,7 +31,9 @@ inline VerificationCase judged(std::string id, std::string name, std::string qua
 inline Material grain_material(double density, double youngs_modulus, double poissons_ratio) {
     return {"grain", density, youngs_modulus, poissons_ratio, ""};
 }
-inline Material rigid_material() { return {"rigid", 1000, std::numeric_limits<double>::infinity(), 0.3, ""}; }
+inline Material rigid_material() {
+    return {"rigid", 1000, std::numeric_limits<double>::infinity(), 0.3, ""};
+}
 
 /// Neither friction, damping, rolling resistance nor adhesion.
 inline Interaction bare_interaction() {
@@ -43,8 +46,8 @@ inline Interaction bare_interaction() {
 }
 
 /// Unsoftened engine without gravity: material 0 = `grain`, 1 = rigid.
-inline EngineOptions laboratory_options(const VerificationOptions& options, const Material& grain, const Interaction& interaction,
-                                        double time_step) {
+inline EngineOptions laboratory_options(const VerificationOptions& options, const Material& grain,
+                                        const Interaction& interaction, double time_step) {
     EngineOptions o;
     o.materials = {grain, rigid_material()};
     o.interaction = interaction;
@@ -65,9 +68,12 @@ inline std::size_t index_of(const Engine& engine, int id) {
     return ids.size();
 }
 
-inline double sphere_mass(double density, double radius) { return density * 4.0 / 3.0 * kPi * radius * radius * radius; }
+inline double sphere_mass(double density, double radius) {
+    return density * 4.0 / 3.0 * kPi * radius * radius * radius;
+}
 
-/// Elastic Hertz impact, closed form: k = 4/3 E* sqrt(R*), delta_max = (5 m* V^2/(4 k))^(2/5), t_c = 2.9432 delta_max/V.
+/// Elastic Hertz impact, closed form: k = 4/3 E* sqrt(R*), delta_max = (5 m* V^2/(4 k))^(2/5), t_c = 2.9432
+/// delta_max/V.
 struct HertzImpact {
     double overlap_max, force_max, contact_time;
 };

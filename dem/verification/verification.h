@@ -1,5 +1,6 @@
-// The verification ladder (physics.md 6): published impacts, closed forms and conservation laws, each run through the engine's own
-// stepping path. Part of the product: `gradwright verify` prints what the tests assert. No test framework here.
+// The verification ladder (physics.md 6): published impacts, closed forms and conservation laws, each run
+// through the engine's own stepping path. Part of the product: `gradwright verify` prints what the tests
+// assert. No test framework here.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ struct VerificationCase {
     std::string name;      ///< the case, with the numbers that set it apart
     std::string quantity;  ///< what is compared, with its unit
     double expected = 0, obtained = 0;
-    double error = 0;      ///< relative to `expected`, or to the scale that the quantity's name gives; for bounds and orders the excess
+    double error = 0;  ///< relative to `expected`, or to the scale that the quantity's name gives; for bounds
+                       ///< and orders the excess
     double tolerance = 0;  ///< largest error that passes
     std::string source;    ///< formula or publication
     bool pass = false;
@@ -44,7 +46,8 @@ VerificationCases verify_sticking_speed(const VerificationOptions& options);
 VerificationCases verify_slide_to_roll(const VerificationOptions& options);
 /// V8: rolling resistance: spin-down, rolling down an incline, rest on it.
 VerificationCases verify_rolling(const VerificationOptions& options);
-/// V9: force = slope of the elastic energy; energy error falls fourfold with half the step; dissipative laws only lose energy.
+/// V9: force = slope of the elastic energy; energy error falls fourfold with half the step; dissipative laws
+/// only lose energy.
 VerificationCases verify_energy(const VerificationOptions& options);
 /// V10: an isolated cluster keeps its momentum and angular momentum.
 VerificationCases verify_conservation(const VerificationOptions& options);

@@ -52,7 +52,7 @@ class Program : public testing::Test {
     /// `before`: words in front of the program, such as "timeout 2 ".
     Outcome run(const std::vector<std::string>& arguments, const std::string& before = "") const {
         std::string command = "cd " + quoted((folder_ / "work").string()) +
-                              " && XDG_CACHE_HOME=" + quoted((folder_ / "cache").string()) + " " +
+                              " && XDG_CACHE_HOME=" + quoted((folder_ / "cache").string()) + " " + before +
                               quoted(GRADWRIGHT_PROGRAM);
         for (const std::string& argument : arguments) command += " " + quoted(argument);
         command += " >" + quoted((folder_ / "out").string()) + " 2>" + quoted((folder_ / "err").string()) +

@@ -1,4 +1,6 @@
 // What the engine does around the law: lists, history, bodies, sleep, removal, failure.
+#include "dem/engine.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <map>
 #include <numbers>
 
-#include "dem/engine.h"
 #include "dem/random.h"
 
 namespace gradwright {
@@ -15,12 +16,15 @@ namespace {
 
 constexpr double kRadius = 20e-6, kStep = 2e-7;
 
-Material metal(double density = 8000) { return {"metal", density, 2e7, 0.3, ""}; }
+Material metal(double density = 8000) {
+    return {"metal", density, 2e7, 0.3, ""};
+}
 
 /// Material 0 metal, 1 rigid, 2 metal of half the density, 3 metal too heavy for any force here to move.
 EngineOptions bare(Precision precision = Precision::double_law) {
     EngineOptions o;
-    o.materials = {metal(), {"rigid", 1000, std::numeric_limits<double>::infinity(), 0.3, ""}, metal(4000), metal(1e18)};
+    o.materials = {
+        metal(), {"rigid", 1000, std::numeric_limits<double>::infinity(), 0.3, ""}, metal(4000), metal(1e18)};
     o.interaction.work_of_adhesion = 0;
     o.gravity = {0, 0, 0};
     o.time_step = kStep;
@@ -45,20 +49,24 @@ Body plane_z(double z = 0) {
 std::map<int, std::array<double, 6>> by_id(const Engine& e) {
     std::map<int, std::array<double, 6>> out;
     const State& s = e.state();
-    for (std::size_t i = 0; i < s.size(); ++i) out[s.id[i]] = {s.x[i], s.y[i], s.z[i], s.wx[i], s.wy[i], s.wz[i]};
+    for (std::size_t i = 0; i < s.size(); ++i)
+        out[s.id[i]] = {s.x[i], s.y[i], s.z[i], s.wx[i], s.wy[i], s.wz[i]};
     return out;
 }
 
 class EngineOf : public testing::TestWithParam<Precision> {};
 INSTANTIATE_TEST_SUITE_P(Law, EngineOf, testing::Values(Precision::double_law, Precision::single_law),
-                         [](const auto& info) { return info.param == Precision::double_law ? "double" : "single"; });
+                         [](const auto& info) {
+                             return info.param == Precision::double_law ? "double" : "single";
+                         });
 
 TEST_P(EngineOf, nothing_one_and_two_grains_run) {
     for (int grains = 0; grains <= 2; ++grains) {
         EngineOptions o = bare(GetParam());
         o.gravity = {0, 0, -9.81};
         Engine e(o);
-        for (int k = 0; k < grains; ++k) e.add_grain({.x = 3 * kRadius * k, .z = 5 * kRadius, .radius = kRadius});
+        for (int k = 0; k < grains; ++k)
+            e.add_grain({.x = 3 * kRadius * k, .z = 5 * kRadius, .radius = kRadius});
         EXPECT_EQ(e.advance(1000), 1000);
         EXPECT_EQ(e.failed(), "");
         EXPECT_EQ(e.contacts(), 0u);
@@ -80,7 +88,10 @@ TEST_P(EngineOf, a_grain_held_by_static_friction_does_not_creep_over_a_thousand_
         if (on_grains) {
             for (int k = 0; k < 3; ++k) {
                 const double a = 2 * std::numbers::pi * k / 3;
-                e.add_grain({.x = 1.1 * kRadius * std::cos(a), .y = 1.1 * kRadius * std::sin(a), .radius = kRadius, .fixed = true});
+                e.add_grain({.x = 1.1 * kRadius * std::cos(a),
+                             .y = 1.1 * kRadius * std::sin(a),
+                             .radius = kRadius,
+                             .fixed = true});
             }
         } else {
             e.add_body(plane_z(std::sqrt(4 - 1.21) * kRadius - kRadius));
@@ -92,20 +103,24 @@ TEST_P(EngineOf, a_grain_held_by_static_friction_does_not_creep_over_a_thousand_
             e.refresh();
             e.advance(10);
         }
-        EXPECT_NEAR(e.state().x[index_of(e, id)], x, 1e-6 * kRadius) << (on_grains ? "on grains" : "on a plane");
+        EXPECT_NEAR(e.state().x[index_of(e, id)], x, 1e-6 * kRadius)
+            << (on_grains ? "on grains" : "on a plane");
         EXPECT_NEAR(e.state().z[index_of(e, id)], z, 1e-6 * kRadius);
     }
 }
 
-/// Two bonded grains that circle each other with loaded springs past a far fixed grain; the order of storage follows the cells.
-std::map<int, std::array<double, 6>> circling_pair(Precision precision, RollingModel rolling, bool rebuild, int& swaps) {
+/// Two bonded grains that circle each other with loaded springs past a far fixed grain; the order of storage
+/// follows the cells.
+std::map<int, std::array<double, 6>> circling_pair(Precision precision, RollingModel rolling, bool rebuild,
+                                                   int& swaps) {
     EngineOptions o = bare(precision);
     o.interaction.work_of_adhesion = 5e-4;
     o.interaction.coefficient_of_restitution = 1;
     o.interaction.rolling_model = rolling;
     if (!rebuild) o.skin = 20 * kRadius, o.near_skin = 19 * kRadius;
     Engine e(o);
-    const double cell = 2 * kRadius + 0.6 * kRadius, turn = 1000, reach = kRadius - 2e-9;  // 0.45 r + 0.15 r: the default skin
+    const double cell = 2 * kRadius + 0.6 * kRadius, turn = 1000,
+                 reach = kRadius - 2e-9;  // 0.45 r + 0.15 r: the default skin
     e.add_grain({.x = -4 * cell, .z = 0, .radius = kRadius, .fixed = true});
     // around x = 0, the boundary of two cells
     const int a = e.add_grain({.x = -reach, .vy = -turn * reach, .wz = turn + 30, .radius = kRadius});
@@ -125,12 +140,14 @@ std::map<int, std::array<double, 6>> circling_pair(Precision precision, RollingM
 TEST_P(EngineOf, springs_turn_round_with_the_storage_order_of_their_pair) {
     for (const RollingModel rolling : {RollingModel::none, RollingModel::spring}) {
         int swaps = 0, none = 0;
-        const auto kept = circling_pair(GetParam(), rolling, false, none), rebuilt = circling_pair(GetParam(), rolling, true, swaps);
+        const auto kept = circling_pair(GetParam(), rolling, false, none),
+                   rebuilt = circling_pair(GetParam(), rolling, true, swaps);
         EXPECT_GE(swaps, 4);
         EXPECT_EQ(none, 0);
         const double exact = GetParam() == Precision::double_law ? 1e-9 : 1e-4;
         for (const auto& [id, values] : kept)
-            for (int k = 0; k < 6; ++k) EXPECT_NEAR(rebuilt.at(id)[k], values[k], exact * (k < 3 ? kRadius : 1000)) << id << " " << k;
+            for (int k = 0; k < 6; ++k)
+                EXPECT_NEAR(rebuilt.at(id)[k], values[k], exact * (k < 3 ? kRadius : 1000)) << id << " " << k;
     }
 }
 
@@ -164,8 +181,8 @@ TEST(Sleep, a_settled_pile_lies_where_it_lies_without_sleep) {
     add_pile(settled, 54, 4);
     settled.advance(100000);
     ASSERT_LT(settled.max_speed(), 1e-3);
-    // From these positions and without springs: a short relaxation, then rest, asleep or not. (The fall itself is chaotic: the last
-    // rollers of two runs that part by one bit end up radii apart.)
+    // From these positions and without springs: a short relaxation, then rest, asleep or not. (The fall
+    // itself is chaotic: the last rollers of two runs that part by one bit end up radii apart.)
     std::map<int, std::array<double, 6>> ends[2];
     for (const bool sleep : {false, true}) {
         o.sleep = sleep;
@@ -173,7 +190,8 @@ TEST(Sleep, a_settled_pile_lies_where_it_lies_without_sleep) {
         add_pile(e, 54, 4);
         for (std::size_t i = 0; i < 54; ++i) {
             const std::size_t from = index_of(settled, static_cast<int>(i));
-            e.state().x[i] = settled.state().x[from], e.state().y[i] = settled.state().y[from], e.state().z[i] = settled.state().z[from];
+            e.state().x[i] = settled.state().x[from], e.state().y[i] = settled.state().y[from],
+            e.state().z[i] = settled.state().z[from];
         }
         e.advance(50000);
         EXPECT_EQ(e.failed(), "");
@@ -217,7 +235,8 @@ TEST(Removal, removed_grains_are_gone_and_the_others_stay_at_rest_at_once) {
     o.interaction.rolling_model = RollingModel::spring;
     Engine e(o);
     e.add_body(plane_z());
-    for (int k = 0; k < 10; ++k) e.add_grain({.x = 5 * kRadius * k, .z = 0.9999 * kRadius, .radius = kRadius});
+    for (int k = 0; k < 10; ++k)
+        e.add_grain({.x = 5 * kRadius * k, .z = 0.9999 * kRadius, .radius = kRadius});
     e.advance(20000);
     e.remove_grains([&](std::size_t i) { return e.state().id[i] % 2 == 0; });
     EXPECT_EQ(e.mobile(), 5u);
@@ -245,8 +264,8 @@ TEST(Removal, grains_past_the_end_leave_the_run) {
 }
 
 TEST(Bodies, a_grain_keeps_its_spring_from_the_face_over_the_edge) {
-    // Dragged along the top of a box and over its edge by inertia alone, the contact slides all the way: friction is mu times the
-    // normal force at every instant. A lost spring would start again from zero.
+    // Dragged along the top of a box and over its edge by inertia alone, the contact slides all the way:
+    // friction is mu times the normal force at every instant. A lost spring would start again from zero.
     EngineOptions o = bare();
     o.interaction.coefficient_of_restitution = 1;
     o.interaction.rolling_friction = 0;
@@ -260,7 +279,8 @@ TEST(Bodies, a_grain_keeps_its_spring_from_the_face_over_the_edge) {
     box.material = 1;
     const int body = e.add_body(box);
     const double overlap = 0.01 * kRadius, speed = 1e-3;
-    e.add_grain({.x = -0.08 * kRadius, .z = kRadius - overlap, .vx = speed, .radius = kRadius, .material = 3});
+    e.add_grain(
+        {.x = -0.08 * kRadius, .z = kRadius - overlap, .vx = speed, .radius = kRadius, .material = 3});
     double worst = 0, tilt = 0;
     for (int k = 0; k < 900; ++k) {
         e.advance(20);
@@ -286,7 +306,8 @@ TEST(Bodies, a_plane_is_the_limit_of_a_huge_fixed_grain) {
         o.interaction.rolling_model = RollingModel::spring;
         o.skin = 0.5 * kRadius;
         Engine e(o);
-        const int id = e.add_grain({.x = 0, .z = 1.01 * kRadius, .vx = 0.1, .vz = -0.1, .wy = -500, .radius = kRadius});
+        const int id =
+            e.add_grain({.x = 0, .z = 1.01 * kRadius, .vx = 0.1, .vz = -0.1, .wy = -500, .radius = kRadius});
         if (wall) {
             Body b = plane_z();
             b.material = 0;
@@ -296,7 +317,8 @@ TEST(Bodies, a_plane_is_the_limit_of_a_huge_fixed_grain) {
         }
         e.advance(400);
         const std::size_t i = index_of(e, id);
-        ends[wall] = {e.state().z[i] / kRadius - 1, e.velocity(i)[0], e.velocity(i)[2], e.spin(i)[1] * kRadius};
+        ends[wall] = {e.state().z[i] / kRadius - 1, e.velocity(i)[0], e.velocity(i)[2],
+                      e.spin(i)[1] * kRadius};
     }
     // lever arms r - overlap/2 and r - overlap: up to 1.5 % of the radius apart in this impact
     EXPECT_GT(ends[0][2], 0.01);

@@ -1,4 +1,8 @@
-// The ladder passes in both precisions; its numbers are the published ones; a broken law turns the rungs red that should see it.
+// The ladder passes in both precisions; its numbers are the published ones; a broken law turns the rungs red
+// that should see it.
+#include "dem/verification/verification.h"
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,10 +10,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-
-#include <fmt/format.h>
-
-#include "dem/verification/verification.h"
 
 namespace gradwright {
 namespace {
@@ -29,8 +29,9 @@ TEST_P(Ladder, every_case_is_within_its_tolerance) {
     const auto cases = GetParam().rung.run(options);
     ASSERT_FALSE(cases.empty());
     for (const auto& c : cases) {
-        EXPECT_TRUE(c.pass) << fmt::format("{} {}: {}: expected {:.10g}, obtained {:.10g}, error {:.3g}, tolerance {:.3g} ({})", c.id, c.name,
-                                           c.quantity, c.expected, c.obtained, c.error, c.tolerance, c.source);
+        EXPECT_TRUE(c.pass) << fmt::format(
+            "{} {}: {}: expected {:.10g}, obtained {:.10g}, error {:.3g}, tolerance {:.3g} ({})", c.id,
+            c.name, c.quantity, c.expected, c.obtained, c.error, c.tolerance, c.source);
         EXPECT_EQ(c.id, GetParam().rung.id);
         EXPECT_FALSE(c.source.empty());
     }
@@ -115,7 +116,8 @@ TEST(Reference, the_ladder_holds_every_row_of_the_hertz_table) {
     const auto rows = read_reference("hertz_impact.csv");
     ASSERT_EQ(rows.size(), 6u);
     for (const auto& row : rows)
-        for (const char* column : {"delta_max_m", "force_max_N", "contact_time_s"}) EXPECT_THAT(expected, Contains(std::stod(row.at(column))));
+        for (const char* column : {"delta_max_m", "force_max_N", "contact_time_s"})
+            EXPECT_THAT(expected, Contains(std::stod(row.at(column))));
 }
 
 TEST(Reference, the_ladder_holds_every_row_of_the_oblique_table) {
@@ -134,8 +136,10 @@ TEST(Reference, the_ladder_holds_every_row_of_the_oblique_table) {
 }
 
 template <class T>
-double law_force(double r1, double r2, double youngs_modulus, double poissons_ratio, double gamma, double overlap) {
-    const double r = r1 * r2 / (r1 + r2), e_star = 0.5 * youngs_modulus / (1 - poissons_ratio * poissons_ratio);
+double law_force(double r1, double r2, double youngs_modulus, double poissons_ratio, double gamma,
+                 double overlap) {
+    const double r = r1 * r2 / (r1 + r2),
+                 e_star = 0.5 * youngs_modulus / (1 - poissons_ratio * poissons_ratio);
     LawConstants law;
     law.time_step = 1e-9;
     Contact<T> c{};
@@ -148,8 +152,10 @@ double law_force(double r1, double r2, double youngs_modulus, double poissons_ra
     c.jkr_radius = splat<T>(std::cbrt(2 * 3.14159265358979323846 * gamma * r * r / e_star));
     ContactHistory<T> h{};
     const auto out = contact_law<T, true, RollingModel::none>(law, {}, c, h);
-    if constexpr (Lane<T>::kWidth == 1) return out.fx;
-    else return static_cast<double>(out.fx[Lane<T>::kWidth - 1]);
+    if constexpr (Lane<T>::kWidth == 1)
+        return out.fx;
+    else
+        return static_cast<double>(out.fx[Lane<T>::kWidth - 1]);
 }
 
 TEST(Reference, the_law_gives_every_row_of_the_jkr_curve) {
@@ -166,10 +172,10 @@ TEST(Reference, the_law_gives_every_row_of_the_jkr_curve) {
         // The tear-off row itself is a double root: the overlap's last bit decides whether it still lives.
         if (overlap < tear_off.at(row.at("case")) * (1 - 1e-6)) continue;
         const double scale = std::max(std::fabs(expected), pull_off.at(row.at("case")));
-        const double exact = law_force<double>(number("r1_m"), number("r2_m"), number("youngs_modulus_Pa"), number("poisson"),
-                                               number("work_of_adhesion_J_m2"), overlap);
-        const double fast = law_force<F8>(number("r1_m"), number("r2_m"), number("youngs_modulus_Pa"), number("poisson"),
-                                          number("work_of_adhesion_J_m2"), overlap);
+        const double exact = law_force<double>(number("r1_m"), number("r2_m"), number("youngs_modulus_Pa"),
+                                               number("poisson"), number("work_of_adhesion_J_m2"), overlap);
+        const double fast = law_force<F8>(number("r1_m"), number("r2_m"), number("youngs_modulus_Pa"),
+                                          number("poisson"), number("work_of_adhesion_J_m2"), overlap);
         EXPECT_NEAR(exact, expected, 1e-6 * scale) << row.at("case") << " " << overlap;
         EXPECT_NEAR(fast, expected, 1e-4 * scale) << row.at("case") << " " << overlap;
     }

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Writes the tables of docs/origin-map.md from runs of the program. Usage, from the project's root (about half an hour on 2 cores):
+
+    python3 docs/make_origin_map.py [turnover] [evidence]
+
+Results are kept in runs/origin-map/, so that a second call only rewrites the page. Needs nothing but Python's standard library.
+"""
+import json
+import os
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+RUNS = os.path.join(ROOT, "runs", "origin-map")
+STUDY = "examples/01_linear_coupon.toml"
+
+
+def program(arguments, name):
+    """Output of one call as JSON, kept under runs/origin-map/NAME.json."""
+    kept = os.path.join(RUNS, name + ".json")
+    if not os.path.exists(kept):
+        os.makedirs(RUNS, exist_ok=True)
+        print("running:", " ".join(arguments), file=sys.stderr, flush=True)
+        done = subprocess.run(["./gradwright", *arguments, "--json"], cwd=ROOT, stdout=subprocess.PIPE)
+        if done.returncode not in (0, 4):
+            return None
+        with open(kept, "wb") as file:
+            file.write(done.stdout)
+    with open(kept) as file:
+        return json.load(file)
+
+
+def turnover_table():
+    rows = ["| L_d = L_b mm | land mm | captured f | supply ratio | mean origin / L_d, first -> last sixth of the platform | local sd / L_d | profile rms on the map | x drift, second half |",
+            "|---|---|---|---|---|---|---|---|"]
+    for length, land in ((1.6, 0.2), (3.2, 0.2), (6.4, 0.2), (3.2, 3.2), (3.2, 6.4), (3.2, 12.8)):
+        name = f"turnover-{length}-{land}"
+        r = program(["design", STUDY, "--budget", "1", "--force", "--out", os.path.join(RUNS, name),
+                     "--set", f'machine.dispenser.length="{length} mm"', "--set", f'machine.platform.length="{length} mm"',
+                     "--set", f'machine.land="{land} mm"',
+                     "--set", f'target.footprint.x=["{length / 2} mm", "{length} mm"]'], name)
+        if r is None or r["predicted"]["turnover"] is None:
+            rows.append(f"| {length} | {land} | the spread failed: see runs/origin-map/{name} | | | | | |")
+            continue
+        p, t = r["predicted"], r["predicted"]["turnover"]
+        mean, sd = t["origin_mean"], t["origin_deviation"]
+        rows.append(f"| {length} | {land} | {p['capture_fraction']:.2f} | {p['supply_ratio']:.2f} | "
+                    + " ".join("–" if m is None else f"{m:.2f}" for m in mean)
+                    + f" | {min(s for s in sd if s is not None):.2f}-{max(s for s in sd if s is not None):.2f} | {p['misfit']['value']:.3f} (floor {p['misfit']['noise_floor']:.3f}) | "
+                      f"{p['x_drift']['value']:.3f} (floor {p['x_drift']['noise_floor']:.3f}) |")
+    return "\n".join(rows)
+
+
+def rms(a, b, weight):
+    pairs = [(x - y) ** 2 for x, y, w in zip(a, b, weight) if x is not None and y is not None and w]
+    return (sum(pairs) / len(pairs)) ** 0.5 if pairs else float("nan")
+
+
+def evidence_table():
+    rows = ["| design, B | kinematic against DEM, rms | origin map against DEM, rms | noise of both, rms | captured f | x drift, DEM | beds |",
+            "|---|---|---|---|---|---|---|"]
+    # A material of the same stiffness and 0.54 times the density: only the motion differs.
+    light = ["--set", 'powder.B.material={density="4309 kg/m3", youngs_modulus="195 GPa", poissons_ratio=0.3}']
+    for label, study, extra in (("01, IN718 (density ratio 0.97)", STUDY, []),
+                                ("02, IN718 (density ratio 0.97)", "examples/02_sigmoid_coupon.toml", []),
+                                ("01, density ratio 0.54", STUDY, light)):
+        stem = study.split("/")[1][:2]
+        designed = program(["design", study, "--force", "--out", os.path.join(RUNS, "design-" + stem)], "design-" + stem)
+        folder = os.path.join(RUNS, "design-" + stem, "result.json")
+        if extra:
+            # the same partition, spread with the light powder on a bed of its own
+            dem = program(["evaluate", study, "--fidelity", "full", "--design", folder, "--seed", "77", *extra], "light-" + stem)
+            profile, beds, drift, f = dem["profile"]["gi"], 1, dem["x_drift"]["value"], dem["capture_fraction"]
+            error = dem["profile"]["standard_error"]
+        else:
+            profile, beds = designed["profile"]["confirmed"], designed["spreads"]["full"]
+            drift, f, error = designed["x_drift"]["value"], designed["capture_fraction"], designed["profile"]["standard_error"]
+        kinematic = program(["evaluate", study, "--fidelity", "kinematic", "--design", folder], "kinematic-" + stem)
+        weight = designed["profile"]["weight"]
+        map_gi, map_error = designed["profile"]["predicted"], designed["profile"]["predicted_standard_error"]
+        noise = rms([(a * a + b * b) ** 0.5 if a is not None and b is not None else None for a, b in zip(error, map_error)],
+                    [0] * len(error), weight)
+        rows.append(f"| {label} | {rms(kinematic['profile']['gi'], profile, weight):.3f} | {rms(map_gi, profile, weight):.3f} | {noise:.3f} | "
+                    f"{f:.2f} | {drift:.3f} | {beds} |")
+    return "\n".join(rows)
+
+
+def main():
+    wanted = sys.argv[1:] or ["turnover", "evidence"]
+    page = os.path.join(ROOT, "docs", "origin-map.md")
+    with open(page) as file:
+        text = file.read()
+    for name, table in (("turnover", turnover_table), ("evidence", evidence_table)):
+        if name not in wanted:
+            continue
+        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+        head, rest = text.split(begin)
+        text = head + begin + "\n" + table() + "\n" + end + rest.split(end)[1]
+    with open(page, "w") as file:
+        file.write(text)
+
+
+main()

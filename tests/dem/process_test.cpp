@@ -1,0 +1,250 @@
+// Packing, the bed cache and the spread on scenes of a few hundred grains.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "dem/bed.h"
+#include "dem/engine.h"
+
+namespace gradwright {
+namespace {
+
+double volume_of(double r) {
+    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
+
+/// The paper's powders without fines on a machine half a millimetre long.
+Scene tiny_scene() {
+    Scene s;
+    s.dispenser_length = 0.5e-3;
+    s.width = 0.26e-3;
+    s.bed_depth = 40e-6;
+    s.dose_height = 80e-6;
+    s.land = 0.2e-3;
+    s.platform_length = 0.4e-3;
+    s.second_land = 0.5e-3;
+    s.gap = 100e-6;
+    s.blade_speed = 0.3;
+    s.blade_thickness = 0.2e-3;
+    s.powder[0].material = {"A", 7980, 210e9, 0.3, ""};
+    s.powder[1].material = {"B", 8200, 195e9, 0.3, ""};
+    for (auto& p : s.powder) p.size.cut_low = 25e-6, p.size.cut_high = 62e-6;
+    s.wall = s.powder[0].material;
+    s.rayleigh_fraction = 0.3;
+    s.seed = 3;
+    return s;
+}
+
+/// A bed of about 150 grains, to be packed several times.
+Scene smallest_scene() {
+    Scene s = tiny_scene();
+    s.dispenser_length = 0.26e-3;
+    s.bed_depth = 20e-6;
+    s.dose_height = 50e-6;
+    return s;
+}
+
+void expect_same_bits(const Bed& a, const Bed& b) {
+    EXPECT_EQ(a.x, b.x);
+    EXPECT_EQ(a.y, b.y);
+    EXPECT_EQ(a.z, b.z);
+    EXPECT_EQ(a.radius, b.radius);
+    EXPECT_EQ(a.material, b.material);
+    EXPECT_EQ(a.facts.packing_fraction, b.facts.packing_fraction);
+    EXPECT_EQ(a.facts.steps, b.facts.steps);
+    EXPECT_EQ(a.facts.made_d10_d50_d90, b.facts.made_d10_d50_d90);
+}
+
+TEST(Packing, a_bed_settles_and_its_facts_say_so) {
+    const Scene scene = tiny_scene();
+    SpreadOptions options;
+    options.threads = 1;
+    RunHealth health;
+    const Bed bed = pack_bed(scene, nullptr, options, health);
+    ASSERT_EQ(health.status, "ok") << health.reason;
+    EXPECT_GT(bed.x.size(), 300u);
+    const BedFacts& f = bed.facts;
+    EXPECT_GT(f.packing_fraction, 0.45);
+    EXPECT_LT(f.packing_fraction, 0.65);
+    EXPECT_LT(f.speed_number, 0.01);
+    EXPECT_NEAR(f.carried_weight_ratio, 1, 0.01);
+    EXPECT_GT(f.mean_coordination, 2.5);
+    EXPECT_LT(f.mean_coordination, 7);
+    EXPECT_LT(f.max_overlap_ratio, 0.02);
+    EXPECT_FALSE(f.from_cache);
+    for (std::size_t i = 0; i < bed.x.size(); ++i) {
+        EXPECT_GT(bed.z[i], -scene.bed_depth - 0.3 * scene.roughness);
+        EXPECT_GE(bed.y[i], 0);
+        EXPECT_LT(bed.y[i], scene.width);
+        EXPECT_EQ(bed.material[i], 0);
+    }
+}
+
+TEST(Packing, grains_lie_on_their_side_of_the_partition) {
+    const Scene scene = smallest_scene();
+    const auto partition = straight_partition(scene.dispenser_length, scene.width, 0.2, 0);
+    SpreadOptions options;
+    options.threads = 1;
+    RunHealth health;
+    const Bed bed = pack_bed(scene, &partition, options, health);
+    ASSERT_EQ(health.status, "ok") << health.reason;
+    std::size_t wrong = 0;
+    double volume[2] = {};
+    for (std::size_t i = 0; i < bed.x.size(); ++i) {
+        wrong += (bed.material[i] == 0) != partition.on_side_a(bed.x[i], bed.y[i]);
+        volume[bed.material[i]] += volume_of(bed.radius[i]);
+    }
+    EXPECT_LE(wrong, bed.x.size() / 50);  // what crossed while the last grains settled
+    EXPECT_GT(volume[0] / (volume[0] + volume[1]), 0.35);
+    EXPECT_LT(volume[0] / (volume[0] + volume[1]), 0.65);
+}
+
+class Cache : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ =
+            std::filesystem::temp_directory_path() / ("gradwright-bed-cache-" + std::to_string(::getpid()));
+        std::filesystem::remove_all(folder_);
+        options_.threads = 1;
+        options_.cache_folder = folder_;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    std::filesystem::path only_file() const {
+        std::vector<std::filesystem::path> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_)) files.push_back(entry.path());
+        EXPECT_EQ(files.size(), 1u);
+        return files.front();
+    }
+    Bed bed() {
+        RunHealth health;
+        Bed b = cached_bed(smallest_scene(), nullptr, options_, health);
+        EXPECT_EQ(health.status, "ok") << health.reason;
+        return b;
+    }
+    std::filesystem::path folder_;
+    SpreadOptions options_;
+};
+
+TEST_F(Cache, a_kept_bed_has_the_bits_of_the_packed_one_and_a_damaged_one_is_made_anew) {
+    const Bed packed = bed();
+    EXPECT_FALSE(packed.facts.from_cache);
+    const Bed kept = bed();
+    EXPECT_TRUE(kept.facts.from_cache);
+    expect_same_bits(packed, kept);
+    EXPECT_GT(kept.facts.seconds_cold, 0);
+
+    const auto file = only_file();
+    const auto size = std::filesystem::file_size(file);
+    std::filesystem::resize_file(file, size / 2);
+    const Bed after_cut = bed();
+    EXPECT_FALSE(after_cut.facts.from_cache);
+    expect_same_bits(packed, after_cut);
+    EXPECT_EQ(std::filesystem::file_size(file), size);
+
+    {
+        std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+        bytes.seekg(static_cast<std::streamoff>(size * 3 / 5));
+        const char byte = static_cast<char>(bytes.get());
+        bytes.seekp(static_cast<std::streamoff>(size * 3 / 5));
+        bytes.put(static_cast<char>(byte ^ 0x10));
+    }
+    const Bed after_flip = bed();
+    EXPECT_FALSE(after_flip.facts.from_cache);
+    expect_same_bits(packed, after_flip);
+    EXPECT_TRUE(bed().facts.from_cache);
+}
+
+TEST(Failure, a_time_step_beyond_the_edge_ends_as_diverged_with_the_knob) {
+    Scene scene = smallest_scene();
+    scene.rayleigh_fraction = 6;
+    SpreadOptions options;
+    options.threads = 1;
+    const auto result = run_spread(scene, nullptr, options);
+    EXPECT_EQ(result.health.status, "diverged");
+    EXPECT_THAT(result.health.reason, testing::HasSubstr("rayleigh_fraction"));
+    EXPECT_EQ(result.layer.size(), 0u);
+}
+
+class Spread : public testing::Test {
+  protected:
+    static SpreadResult spread(const Scene& scene, const PartitionCurve* partition, int threads) {
+        SpreadOptions options;
+        options.threads = threads;
+        options.cache_folder =
+            (std::filesystem::temp_directory_path() / ("gradwright-spread-" + std::to_string(::getpid())))
+                .string();
+        options.snapshots = 1;
+        return run_spread(scene, partition, options);
+    }
+    static void TearDownTestSuite() {
+        std::filesystem::remove_all(std::filesystem::temp_directory_path() /
+                                    ("gradwright-spread-" + std::to_string(::getpid())));
+    }
+};
+
+TEST_F(Spread, one_and_three_threads_leave_the_same_bits_and_no_grain_is_lost) {
+    const Scene scene = tiny_scene();
+    const auto one = spread(scene, nullptr, 1);
+    ASSERT_EQ(one.health.status, "ok") << one.health.reason;
+    const auto three = spread(scene, nullptr, 3);
+    EXPECT_EQ(one.state_hash, three.state_hash);
+    EXPECT_EQ(one.layer.deposit_y, three.layer.deposit_y);
+
+    const double platform = scene.dispenser_length + scene.land, end = platform + scene.platform_length;
+    double before = 0, rest = 0;
+    for (const float r : one.snapshots.front().radius) before += volume_of(r);
+    const Snapshot& last = one.snapshots.back();
+    for (std::size_t i = 0; i < last.x.size(); ++i)
+        if (last.x[i] < end && (last.x[i] < platform || last.z[i] >= 0)) rest += volume_of(last.radius[i]);
+    EXPECT_GT(one.layer.size(), 20u);
+    EXPECT_NEAR((one.layer.solid_volume() + one.layer.overflow_solid_volume + rest) / before, 1, 1e-5);
+    EXPECT_LT(one.layer.solid_volume(), one.layer.dosed_solid_volume);
+    for (std::size_t i = 0; i < one.layer.size(); ++i) {
+        EXPECT_GE(one.layer.deposit_x[i], 0);
+        EXPECT_LT(one.layer.deposit_x[i], scene.platform_length);
+        EXPECT_LT(one.layer.origin_x[i], scene.dispenser_length);
+        EXPECT_TRUE(std::isfinite(one.layer.deposit_z[i]));
+    }
+}
+
+TEST_F(Spread, a_labelled_run_carries_both_materials_and_their_masses) {
+    Scene scene = tiny_scene();
+    const auto partition = straight_partition(scene.dispenser_length, scene.width, 0.3, 0);
+    const auto labelled = spread(scene, &partition, 1);
+    ASSERT_EQ(labelled.health.status, "ok") << labelled.health.reason;
+    ASSERT_TRUE(labelled.layer.labelled);
+    std::size_t a = 0, wrong = 0;
+    for (std::size_t i = 0; i < labelled.layer.size(); ++i) {
+        a += labelled.layer.is_a[i];
+        wrong += labelled.layer.is_a[i] !=
+                 partition.on_side_a(labelled.layer.origin_x[i], labelled.layer.origin_y[i]);
+    }
+    EXPECT_GT(a, 0u);
+    EXPECT_LT(a, labelled.layer.size());
+    EXPECT_LE(wrong, labelled.layer.size() / 50);
+    // B's density alone moves the grains: a run that dropped it would leave the same bits
+    scene.powder[1].material.density = 7000;
+    const auto lighter = spread(scene, &partition, 1);
+    EXPECT_NE(lighter.state_hash, labelled.state_hash);
+}
+
+TEST_F(Spread, each_material_of_the_scene_has_its_own_mass_and_stiffness_in_the_engine) {
+    Scene scene = tiny_scene();
+    scene.powder[1].material.density = 4000;
+    Engine engine(engine_options(scene, 1));
+    engine.add_grain({.radius = 20e-6, .material = 0});
+    engine.add_grain({.x = 1e-3, .radius = 20e-6, .material = 1});
+    EXPECT_NEAR(engine.state().mass[0], 7980 * volume_of(20e-6), 1e-18);
+    EXPECT_NEAR(engine.state().mass[1], 4000 * volume_of(20e-6), 1e-18);
+    const double reduced = 0.91 * (1 / 210e5 + 1 / 195e5);  // (1 - nu^2)(1/E1 + 1/E2), E softened by 1e-4
+    EXPECT_NEAR(engine.pair_constants(0, 1).e_star * reduced, 1, 1e-12);
+    EXPECT_NEAR(engine.pair_constants(0, 0).e_star * 2 * 0.91 / 210e5, 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace gradwright

@@ -1,0 +1,112 @@
+// The main job with the real engine on a scene small enough for a test: study text in, verdict out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "optimise/design_run.h"
+#include "optimise/study_file.h"
+
+namespace gradwright {
+namespace {
+
+/// A quarter-size coupon: 0.9 x 0.8 mm dispenser, fast blade, coarse time step. Physics of the shipped examples.
+std::string tiny_study() {
+    return R"(
+[study]
+name = "tiny"
+[machine]
+dispenser = { length = "0.9 mm", width = "0.8 mm", depth = "1 mm" }
+platform  = { length = "0.9 mm" }
+land = "0.6 mm"
+second_land = "0.8 mm"
+blade = { thickness = "0.2 mm" }
+[process]
+layer_thickness = "40 um"
+blade_speed = "200 mm/s"
+substrate = "fused"
+gap = "steady"
+steady_packing = 0.28
+sides = "periodic"
+[powder.A]
+material = "SS17-4PH"
+[powder.B]
+material = "IN718"
+[target]
+shape = "linear"
+from = { y = "0.2 mm", gi = 0.0 }
+to   = { y = "0.6 mm", gi = 1.0 }
+footprint = { x = ["0.2 mm", "0.9 mm"] }
+bin_width = "0.1 mm"
+[design_space]
+partition = { family = "polyline", knots = 3, monotone = true }
+dosage_factor = 3.0
+[objective]
+tolerance = 0.2
+x_drift_tolerance = 0.5
+[numerics]
+time_step = { rayleigh_fraction = 0.3 }
+bed_depth = "80 um"
+reductions = ["fines_cut", "shallow_bed", "strip_map"]
+strip_width = "0.3 mm"
+[run]
+seed = 3
+max_spreads = 2
+)";
+}
+
+StudyResult design(const Study& study, int threads, const std::string& journal = "") {
+    RunOptions options;
+    options.threads = threads;
+    options.journal_folder = journal;
+    return run_map_strategy(study, options);
+}
+
+TEST(EndToEnd, a_tiny_study_is_designed_and_confirmed_with_the_same_bits_on_one_and_two_threads) {
+    const Study study = parse_study(tiny_study(), "tiny.toml");
+    const std::filesystem::path journal = std::filesystem::temp_directory_path() / "gradwright end to end journal";
+    std::filesystem::remove_all(journal);
+    const StudyResult one = design(study, 1, journal.string());
+    ASSERT_EQ(one.termination == "failed", false) << one.message;
+    ASSERT_GE(one.confirmations.size(), 1u) << one.message;
+    EXPECT_EQ(one.spreads_map, 1);
+    EXPECT_EQ(one.spreads_full, 1);
+
+    // The confirmation packed its own bed and carried both powders.
+    EXPECT_NE(one.confirmations[0].seed, one.map_layers.at(0).packing_seed);
+    EXPECT_FALSE(one.map_layers[0].labelled);
+    EXPECT_GT(one.capture_fraction, 0.1);
+    EXPECT_LT(one.capture_fraction, 1.0);
+    EXPECT_GT(one.packing_fraction, 0.1);
+    EXPECT_LT(one.packing_fraction, 0.6);
+
+    // A ramp was asked for and a ramp was laid: rising from mostly B to mostly A over the counting bins.
+    const auto& gi = one.confirmed.gi;
+    std::vector<double> counting;
+    for (std::size_t b = 0; b < gi.size(); ++b)
+        if (one.weight[b] > 0) counting.push_back(gi[b]);
+    ASSERT_GE(counting.size(), 3u);
+    EXPECT_GT(counting.back() - counting.front(), 0.3);
+    for (const double value : counting) EXPECT_TRUE(std::isfinite(value));
+    EXPECT_LT(one.misfit.value, 0.25);
+
+    // Each finished evaluation is one file.
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(journal)) files += entry.path().extension() == ".json";
+    EXPECT_GE(files, 3);
+    std::filesystem::remove_all(journal);
+
+    const StudyResult two = design(study, 2);
+    EXPECT_EQ(one.confirmations[0].state_hash, two.confirmations.at(0).state_hash);
+    EXPECT_EQ(one.predicted.state_hash, two.predicted.state_hash);
+    EXPECT_EQ(one.misfit.value, two.misfit.value);
+    EXPECT_EQ(one.drift_misfit.value, two.drift_misfit.value);
+    ASSERT_EQ(one.design.partition.points.size(), two.design.partition.points.size());
+    for (std::size_t k = 0; k < one.design.partition.points.size(); ++k) {
+        EXPECT_EQ(one.design.partition.points[k].x, two.design.partition.points[k].x);
+        EXPECT_EQ(one.design.partition.points[k].y, two.design.partition.points[k].y);
+    }
+}
+
+}  // namespace
+}  // namespace gradwright
