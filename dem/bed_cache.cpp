@@ -1,7 +1,6 @@
 // Settled beds on disk: key = every number that shapes the bed.
-#include <omp.h>
-
 #include <fmt/format.h>
+#include <omp.h>
 
 #include "dem/bed.h"
 #include "dem/cache_file.h"
@@ -10,7 +9,8 @@ namespace gradwright {
 namespace {
 
 std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
-    Scene s = scene;  // what the bed does not depend on is blanked, so that other lands and gaps find the same bed
+    Scene s =
+        scene;  // what the bed does not depend on is blanked, so that other lands and gaps find the same bed
     s.land = s.platform_length = s.second_land = s.gap = s.layer_thickness = 0;
     s.blade_speed = s.blade_tip_radius = s.blade_thickness = 0;
     s.headspace = {0, 0};
@@ -31,8 +31,8 @@ std::string pack_bytes(const Bed& bed) {
     put(out, bed.radius);
     put(out, bed.material);
     const auto& f = bed.facts;
-    put(out, std::vector<double>{f.packing_fraction, f.mean_coordination, f.max_overlap_ratio, f.speed_number, f.carried_weight_ratio,
-                                 static_cast<double>(f.steps), f.seconds_cold});
+    put(out, std::vector<double>{f.packing_fraction, f.mean_coordination, f.max_overlap_ratio, f.speed_number,
+                                 f.carried_weight_ratio, static_cast<double>(f.steps), f.seconds_cold});
     put(out, f.made_d10_d50_d90);
     return out;
 }
@@ -40,8 +40,9 @@ std::string pack_bytes(const Bed& bed) {
 bool unpack(const std::string& bytes, Bed& bed) {
     std::size_t at = 0;
     std::vector<double> facts;
-    if (!take(bytes, at, bed.x) || !take(bytes, at, bed.y) || !take(bytes, at, bed.z) || !take(bytes, at, bed.radius) ||
-        !take(bytes, at, bed.material) || !take(bytes, at, facts) || !take(bytes, at, bed.facts.made_d10_d50_d90) || facts.size() != 7)
+    if (!take(bytes, at, bed.x) || !take(bytes, at, bed.y) || !take(bytes, at, bed.z) ||
+        !take(bytes, at, bed.radius) || !take(bytes, at, bed.material) || !take(bytes, at, facts) ||
+        !take(bytes, at, bed.facts.made_d10_d50_d90) || facts.size() != 7)
         return false;
     auto& f = bed.facts;
     f.packing_fraction = facts[0];
@@ -57,7 +58,8 @@ bool unpack(const std::string& bytes, Bed& bed) {
 
 }  // namespace
 
-Bed cached_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options, RunHealth& health) {
+Bed cached_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options,
+               RunHealth& health) {
     if (options.cache_folder.empty()) return pack_bed(scene, partition, options, health);
     const double start = omp_get_wtime();
     const std::string key = bed_key(scene, partition);
@@ -69,8 +71,8 @@ Bed cached_bed(const Scene& scene, const PartitionCurve* partition, const Spread
     }
     bed = pack_bed(scene, partition, options, health);
     if (health.ok() && !write_cache(options.cache_folder, "bed", key, pack_bytes(bed)))
-        health.warnings.push_back(
-            fmt::format("the cache {} cannot be written; beds are packed anew each time", options.cache_folder));
+        health.warnings.push_back(fmt::format(
+            "the cache {} cannot be written; beds are packed anew each time", options.cache_folder));
     return bed;
 }
 

@@ -1,12 +1,11 @@
 #include "dem/bench.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <cmath>
 #include <stdexcept>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "dem/bed.h"
 
@@ -43,32 +42,20 @@ BenchResult run_bench(const BenchOptions& options) {
         SpreadOptions so;
         so.cache_folder = options.cache_folder;
         if (options.progress)
-            so.progress = [&](const Progress& p) { options.progress(fmt::format("{:.0f} grains: {}", wanted, p.stage), p.fraction); };
+            so.progress = [&](const Progress& p) {
+                options.progress(fmt::format("{:.0f} grains: {}", wanted, p.stage), p.fraction);
+            };
         RunHealth health;
         const Bed bed = cached_bed(scene, nullptr, so, health);
         if (!health.ok()) throw std::runtime_error("bench: " + health.status + ": " + health.reason);
         for (const int threads : options.threads) {
             EngineOptions eo = engine_options(scene, threads);
             Engine engine(eo);
-            for (const auto& g :
-                 rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth, scene.roughness, scene.seed ^ 0xf100f))
+            for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth,
+                                               scene.roughness, scene.seed ^ 0xf100f))
                 engine.add_grain(g);
-            for (std::size_t k = 0; k < bed.x.size(); ++k) {
-                GrainSpec g;
-                g.x = bed.x[k];
-                g.y = bed.y[k];
-                g.z = bed.z[k];
-                g.radius = bed.radius[k];
-                engine.add_grain(g);
-            }
-            for (const double sign : {1.0, -1.0}) {
-                Body end;
-                end.axis = 0;
-                end.sign = sign;
-                end.offset = sign > 0 ? 0 : scene.dispenser_length;
-                end.material = kWallMaterial;
-                engine.add_body(end);
-            }
+            add_bed(engine, bed, false);
+            add_end_walls(engine, scene);
             add_side_walls(engine, scene);
             engine.advance(200);
             const EngineTimes before = engine.times();
@@ -85,7 +72,8 @@ BenchResult run_bench(const BenchOptions& options) {
                         {"near_list", engine.times().near_list - before.near_list},
                         {"candidates", engine.times().candidates - before.candidates}};
             c.bytes_per_grain = engine.memory_bytes() / static_cast<double>(engine.state().size());
-            c.contacts_per_grain = static_cast<double>(engine.contacts()) / static_cast<double>(engine.mobile());
+            c.contacts_per_grain =
+                static_cast<double>(engine.contacts()) / static_cast<double>(engine.mobile());
             c.state_hash = engine.state_hash();
             out.cases.push_back(c);
         }

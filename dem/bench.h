@@ -12,9 +12,9 @@ namespace gradwright {
 struct BenchOptions {
     std::vector<double> grains = {20000};  ///< wanted sizes, mobile grains
     std::vector<int> threads = {1};
-    long steps = 2000;           ///< timed steps a case
-    Scene scene;                 ///< physics: powders, law, time step; lengths are chosen from the size
-    std::string cache_folder;    ///< settled beds
+    long steps = 2000;         ///< timed steps a case
+    Scene scene;               ///< physics: powders, law, time step; lengths are chosen from the size
+    std::string cache_folder;  ///< settled beds
     std::function<void(const std::string& stage, double fraction)> progress;
 };
 

@@ -1,13 +1,12 @@
 #include "dem/cache_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "dem/scene.h"
 
@@ -20,21 +19,24 @@ std::filesystem::path file_of(const std::string& folder, const std::string& kind
 
 }  // namespace
 
-std::optional<std::string> read_cache(const std::string& folder, const std::string& kind, const std::string& key) {
+std::optional<std::string> read_cache(const std::string& folder, const std::string& kind,
+                                      const std::string& key) {
     std::ifstream in(file_of(folder, kind, key), std::ios::binary);
     if (!in) return {};
     std::stringstream stream;
     stream << in.rdbuf();
     const std::string all = stream.str();
     constexpr std::size_t kHash = 16;
-    if (all.size() < kHash || text_hash(all.substr(0, all.size() - kHash)) != all.substr(all.size() - kHash)) return {};
+    if (all.size() < kHash || text_hash(all.substr(0, all.size() - kHash)) != all.substr(all.size() - kHash))
+        return {};
     std::size_t at = 0;
     std::vector<char> stored;
     if (!take(all, at, stored) || std::string(stored.begin(), stored.end()) != key) return {};
     return all.substr(at, all.size() - kHash - at);
 }
 
-bool write_cache(const std::string& folder, const std::string& kind, const std::string& key, const std::string& bytes) {
+bool write_cache(const std::string& folder, const std::string& kind, const std::string& key,
+                 const std::string& bytes) {
     std::string all;
     put(all, std::vector<char>(key.begin(), key.end()));
     all += bytes;
@@ -53,8 +55,10 @@ bool write_cache(const std::string& folder, const std::string& kind, const std::
     }
     written = ::fsync(fd) == 0 && written;
     ::close(fd);
-    if (written) std::filesystem::rename(aside, file, error);
-    else std::filesystem::remove(aside, error);
+    if (written)
+        std::filesystem::rename(aside, file, error);
+    else
+        std::filesystem::remove(aside, error);
     return written && !error;
 }
 

@@ -1,5 +1,5 @@
-// Cache files: one per key, written aside, synced, renamed. A file whose length, key or checksum does not fit counts as absent, so
-// a damaged one is made anew.
+// Cache files: one per key, written aside, synced, renamed. A file whose length, key or checksum does not fit
+// counts as absent, so a damaged one is made anew.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -9,12 +9,15 @@
 
 namespace gradwright {
 
-inline constexpr int kEngineFormat = 2;  ///< raise when the engine makes other beds or layers from the same scene
+inline constexpr int kEngineFormat =
+    2;  ///< raise when the engine makes other beds or layers from the same scene
 
 /// Bytes stored under `key`, none when there are none or they are damaged.
-std::optional<std::string> read_cache(const std::string& folder, const std::string& kind, const std::string& key);
+std::optional<std::string> read_cache(const std::string& folder, const std::string& kind,
+                                      const std::string& key);
 /// False when it cannot be written: a cache costs time, not the run.
-bool write_cache(const std::string& folder, const std::string& kind, const std::string& key, const std::string& bytes);
+bool write_cache(const std::string& folder, const std::string& kind, const std::string& key,
+                 const std::string& bytes);
 
 template <class T>
 void put(std::string& to, const std::vector<T>& values) {

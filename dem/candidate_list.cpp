@@ -1,4 +1,5 @@
-// Cell order and candidate pairs: all pairs with a gap below the skin, found through a grid of cells; and who sleeps.
+// Cell order and candidate pairs: all pairs with a gap below the skin, found through a grid of cells; and who
+// sleeps.
 #include <omp.h>
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 namespace gradwright {
 namespace {
 
-constexpr std::size_t kBlock = 256;  // grains per work block: fixed, so that results never depend on the thread count
+constexpr std::size_t kBlock =
+    256;  // grains per work block: fixed, so that results never depend on the thread count
 
 template <class V>
 void permute(V& values, const std::vector<std::int32_t>& order) {
@@ -29,7 +31,8 @@ void Engine::remove_grains(const std::function<bool(std::size_t)>& predicate) {
         any = any || drop[i];
     }
     if (!any) return;
-    // Marked by an x beyond the end; rebuild_candidates takes them out and carries the remaining contacts over.
+    // Marked by an x beyond the end; rebuild_candidates takes them out and carries the remaining contacts
+    // over.
     for (std::size_t i = 0; i < state_.size(); ++i)
         if (drop[i]) state_.x[i] = 2e9;
     wake_all();
@@ -60,8 +63,11 @@ void Engine::rebuild_candidates() {
     }
     const bool periodic = options_.period_y > 0;
     const double span_y = periodic ? options_.period_y : std::max(hi_y - lo_y, cell);
-    auto cells_of = [&](double span) { return static_cast<int>(std::clamp(std::floor(span / cell), 1.0, 4000.0)); };
-    const int nx = cells_of(std::max(hi_x - lo_x, 0.0) + cell), ny = periodic ? cells_of(span_y) : cells_of(span_y + cell);
+    auto cells_of = [&](double span) {
+        return static_cast<int>(std::clamp(std::floor(span / cell), 1.0, 4000.0));
+    };
+    const int nx = cells_of(std::max(hi_x - lo_x, 0.0) + cell),
+              ny = periodic ? cells_of(span_y) : cells_of(span_y + cell);
     const int nz = std::min(cells_of(std::max(hi_z - lo_z, 0.0) + cell), 512);
     const double inv_y = ny / (periodic ? span_y : span_y + cell);
 
@@ -128,13 +134,16 @@ void Engine::rebuild_candidates() {
             for (int ix = std::max(cx - 1, 0); ix <= std::min(cx + 1, nx - 1); ++ix) {
                 for (int k = 0; k < row_count; ++k) {
                     const std::size_t base = (static_cast<std::size_t>(ix) * ny + rows[k]) * nz;
-                    const std::int32_t from = first[base + std::max(cz - 1, 0)], to = first[base + std::min(cz + 1, nz - 1) + 1];
-                    for (std::int32_t j = std::max<std::int32_t>(from, static_cast<std::int32_t>(i) + 1); j < to; ++j) {
+                    const std::int32_t from = first[base + std::max(cz - 1, 0)],
+                                       to = first[base + std::min(cz + 1, nz - 1) + 1];
+                    for (std::int32_t j = std::max<std::int32_t>(from, static_cast<std::int32_t>(i) + 1);
+                         j < to; ++j) {
                         double dy = s.y[i] - s.y[j];
                         if (periodic) dy -= span_y * std::nearbyint(dy / span_y);
                         const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
                         const double cut = reach + s.radius[j];
-                        if (dx * dx + dy * dy + dz * dz < cut * cut && !(s.fixed[i] && s.fixed[j])) list.push_back(j);
+                        if (dx * dx + dy * dy + dz * dz < cut * cut && !(s.fixed[i] && s.fixed[j]))
+                            list.push_back(j);
                     }
                 }
             }
@@ -146,10 +155,11 @@ void Engine::rebuild_candidates() {
     candidate_owner_.resize(candidate_first_[n]);
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (std::size_t block = 0; block < blocks; ++block) {
-        std::copy(found[block].begin(), found[block].end(), candidate_.begin() + candidate_first_[block * kBlock]);
+        std::copy(found[block].begin(), found[block].end(),
+                  candidate_.begin() + candidate_first_[block * kBlock]);
         for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i)
-            std::fill(candidate_owner_.begin() + candidate_first_[i], candidate_owner_.begin() + candidate_first_[i + 1],
-                      static_cast<std::int32_t>(i));
+            std::fill(candidate_owner_.begin() + candidate_first_[i],
+                      candidate_owner_.begin() + candidate_first_[i + 1], static_cast<std::int32_t>(i));
     }
 
     // Reverse list: for every grain the candidate numbers in which it is the second, ascending.
@@ -158,12 +168,14 @@ void Engine::rebuild_candidates() {
     std::partial_sum(reverse_first_.begin(), reverse_first_.end(), reverse_first_.begin());
     reverse_.resize(candidate_.size());
     std::vector<std::int32_t> at(reverse_first_.begin(), reverse_first_.end() - 1);
-    for (std::size_t c = 0; c < candidate_.size(); ++c) reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(c);
+    for (std::size_t c = 0; c < candidate_.size(); ++c)
+        reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(c);
 }
 
-// A grain sleeps when it and every near neighbour have been slower than sleep_speed for sleep_time; it wakes when an awake near
-// neighbour is faster than wake_speed or a moving body comes within its diameter. The wake front runs one neighbour per refresh
-// of the near list (about 10 m/s at the default time step), faster than a disturbance travels in a softened bed.
+// A grain sleeps when it and every near neighbour have been slower than sleep_speed for sleep_time; it wakes
+// when an awake near neighbour is faster than wake_speed or a moving body comes within its diameter. The wake
+// front runs one neighbour per refresh of the near list (about 10 m/s at the default time step), faster than
+// a disturbance travels in a softened bed.
 void Engine::update_sleep() {
     auto& s = state_;
     const std::size_t n = s.size();
@@ -175,7 +187,9 @@ void Engine::update_sleep() {
             const double v2 = s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
             const double w2 = s.wx[i] * s.wx[i] + s.wy[i] * s.wy[i] + s.wz[i] * s.wz[i];
             speed[i] = static_cast<float>(std::sqrt(std::max(v2, w2 * s.radius[i] * s.radius[i])));
-            s.quiet[i] = speed[i] < options_.sleep_speed ? s.quiet[i] + static_cast<std::int32_t>(steps_since_near_) : 0;
+            s.quiet[i] = speed[i] < options_.sleep_speed
+                             ? s.quiet[i] + static_cast<std::int32_t>(steps_since_near_)
+                             : 0;
         }
         std::vector<std::uint8_t> next(s.asleep);
         const double wake = options_.wake_speed;
@@ -201,13 +215,15 @@ void Engine::update_sleep() {
             if (bodies_move_) {
                 for (std::size_t b = 0; b < bodies_.size(); ++b) {
                     if (body_removed_[b] || (bodies_[b].speed_x == 0 && bodies_[b].speed_z == 0)) continue;
-                    const auto near = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_, bodies_[b].speed_z * body_time_,
-                                                    s.x[i], s.y[i], s.z[i]);
+                    const auto near = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_,
+                                                    bodies_[b].speed_z * body_time_, s.x[i], s.y[i], s.z[i]);
                     if (near.distance < 3 * s.radius[i]) hit = true;
                 }
             }
-            if (s.asleep[i]) next[i] = hit ? 0 : 1;
-            else next[i] = calm && !hit ? 1 : 0;
+            if (s.asleep[i])
+                next[i] = hit ? 0 : 1;
+            else
+                next[i] = calm && !hit ? 1 : 0;
         }
         for (std::size_t i = 0; i < n; ++i) {
             if (next[i] == s.asleep[i]) continue;

@@ -1,8 +1,8 @@
 // What can be said of a scene before anything runs: problems, warnings, cost.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "dem/bed.h"
 
@@ -24,44 +24,64 @@ std::vector<SceneProblem> validate(const Scene& s) {
         d90 = std::max(d90, p.size.d90);
     }
     if (s.dispenser_length < 3 * d_max)
-        fatal(fmt::format("dispenser length {:.0f} um is less than three of the largest grains ({:.0f} um): raise machine.dispenser.length",
-                          s.dispenser_length * um, d_max * um));
+        fatal(
+            fmt::format("dispenser length {:.0f} um is less than three of the largest grains ({:.0f} um): "
+                        "raise machine.dispenser.length",
+                        s.dispenser_length * um, d_max * um));
     if (s.width < 3 * d_max)
-        fatal(fmt::format("modelled width {:.0f} um is less than three of the largest grains ({:.0f} um): raise the dispenser's width or "
-                          "numerics.strip_width",
-                          s.width * um, d_max * um));
+        fatal(
+            fmt::format("modelled width {:.0f} um is less than three of the largest grains ({:.0f} um): "
+                        "raise the dispenser's width or "
+                        "numerics.strip_width",
+                        s.width * um, d_max * um));
     if (s.sides == Sides::periodic && s.width < 4 * d_max)
-        fatal(fmt::format("periodic width {:.0f} um is less than four of the largest grains ({:.0f} um), so that a grain would meet its "
-                          "own image's neighbours: raise numerics.strip_width",
-                          s.width * um, d_max * um));
+        fatal(
+            fmt::format("periodic width {:.0f} um is less than four of the largest grains ({:.0f} um), so "
+                        "that a grain would meet its "
+                        "own image's neighbours: raise numerics.strip_width",
+                        s.width * um, d_max * um));
     if (!(s.blade_speed > 0)) fatal("the blade must move: process.blade_speed > 0");
-    if (s.blade_speed > 1) warn(fmt::format("blade speed {:.2f} m/s: expect overlaps above 2 %, raise numerics.softening", s.blade_speed));
+    if (s.blade_speed > 1)
+        warn(fmt::format("blade speed {:.2f} m/s: expect overlaps above 2 %, raise numerics.softening",
+                         s.blade_speed));
     for (int k = 0; k < 2; ++k)
         if (!(s.headspace[k] >= 0 && s.headspace[k] < s.dose_height))
-            fatal(fmt::format("chamber {} stands {:.0f} um below the rim but the floor rises only {:.0f} um, so it is starved: raise "
-                              "design_space.fill_fraction.{} or the dosage factor",
-                              k == 0 ? 'A' : 'B', s.headspace[k] * um, s.dose_height * um, k == 0 ? 'A' : 'B'));
+            fatal(
+                fmt::format("chamber {} stands {:.0f} um below the rim but the floor rises only {:.0f} um, "
+                            "so it is starved: raise "
+                            "design_space.fill_fraction.{} or the dosage factor",
+                            k == 0 ? 'A' : 'B', s.headspace[k] * um, s.dose_height * um, k == 0 ? 'A' : 'B'));
     if (s.gap < d_max)
-        warn(fmt::format("gap {:.0f} um is smaller than the largest grain ({:.0f} um): large grains are carried or jam", s.gap * um, d_max * um));
+        warn(fmt::format(
+            "gap {:.0f} um is smaller than the largest grain ({:.0f} um): large grains are carried or jam",
+            s.gap * um, d_max * um));
     if (s.gap < 1.5 * d90 && s.gap >= d_max)
-        warn(fmt::format("gap {:.0f} um is below 1.5 D90 ({:.0f} um): the layer will be thin and patchy", s.gap * um, 1.5 * d90 * um));
+        warn(fmt::format("gap {:.0f} um is below 1.5 D90 ({:.0f} um): the layer will be thin and patchy",
+                         s.gap * um, 1.5 * d90 * um));
     if (s.rayleigh_fraction > 0.4)
-        warn(fmt::format("time step {:.2f} of Rayleigh's is close to the stability edge; 0.2 is the default", s.rayleigh_fraction));
-    if (s.blade_tip_radius > 0.5 * s.blade_thickness) fatal("blade tip radius is more than half the blade's thickness: lower machine.blade.tip_radius");
+        warn(fmt::format("time step {:.2f} of Rayleigh's is close to the stability edge; 0.2 is the default",
+                         s.rayleigh_fraction));
+    if (s.blade_tip_radius > 0.5 * s.blade_thickness)
+        fatal("blade tip radius is more than half the blade's thickness: lower machine.blade.tip_radius");
     if (s.bed_depth < 8 * d50 && s.bed_depth < s.dispenser_depth)
-        warn(fmt::format("modelled bed depth {:.0f} um is less than 8 D50 ({:.0f} um): a named reduction; the run checks how far its floor "
-                         "grains move",
-                         s.bed_depth * um, 8 * d50 * um));
+        warn(
+            fmt::format("modelled bed depth {:.0f} um is less than 8 D50 ({:.0f} um): a named reduction; the "
+                        "run checks how far its floor "
+                        "grains move",
+                        s.bed_depth * um, 8 * d50 * um));
     if (s.plate_thickness > 0 && s.bed_depth < s.dispenser_depth)
-        warn(fmt::format("the slot of a {:.2f} mm plate is {:.2f} mm deep but only {:.2f} mm are modelled: its collapse is *not simulated* "
-                         "at full depth; raise numerics.bed_depth",
-                         s.plate_thickness * 1e3, s.dispenser_depth * 1e3, s.bed_depth * 1e3));
+        warn(
+            fmt::format("the slot of a {:.2f} mm plate is {:.2f} mm deep but only {:.2f} mm are modelled: "
+                        "its collapse is *not simulated* "
+                        "at full depth; raise numerics.bed_depth",
+                        s.plate_thickness * 1e3, s.dispenser_depth * 1e3, s.bed_depth * 1e3));
     return out;
 }
 
 SceneCost estimate_cost(const Scene& s) {
     SceneCost c;
-    const double mean_volume = 0.5 * (s.powder[0].size.mean_grain_volume() + s.powder[1].size.mean_grain_volume());
+    const double mean_volume =
+        0.5 * (s.powder[0].size.mean_grain_volume() + s.powder[1].size.mean_grain_volume());
     const double area = s.dispenser_length * s.width;
     c.grains = kBedPacking * area * (s.bed_depth + s.dose_height) / mean_volume;
     const double rough_area = area + (s.substrate == Substrate::fused ? s.platform_length * s.width : 0);

@@ -1,24 +1,28 @@
 // The contact law: one text for pairs and walls, for the double reference and the eight-wide float kernel.
 //
-// Symbols (physics.md 3): n = unit normal from j to i; delta = overlap; R*, E*, G*, m* = effective radius, modulus, shear
-// modulus, mass; a = contact radius; S_n = 2 E* a, S_t = 8 G* a; Gamma = work of adhesion; F_po = 3/2 pi R* Gamma.
+// Symbols (physics.md 3): n = unit normal from j to i; delta = overlap; R*, E*, G*, m* = effective radius,
+// modulus, shear modulus, mass; a = contact radius; S_n = 2 E* a, S_t = 8 G* a; Gamma = work of adhesion;
+// F_po = 3/2 pi R* Gamma.
 //
 // Normal, no adhesion (Hertz 1882):   a = sqrt(R* delta),  F = 4/3 E* a delta.
 // Normal, JKR (Johnson, Kendall, Roberts 1971; paper eq. 3-5) in reduced units. With
-//   a_s = (2 pi Gamma R*^2 / E*)^(1/3),  delta_s = a_s^2/R*,  F_s = 4/3 E* a_s^3/R* = 8/3 pi Gamma R* = 16/9 F_po,  a = a_s s^2:
-//   delta/delta_s = s^4 - s (larger root),  F/F_s = s^3 (s^3 - 3/2).
-//   Tear-off at s_c = 4^(-1/3), delta = -(3/4) 4^(-1/3) delta_s, F = -5/9 F_po; made at delta = 0 (s = 1, F = -8/9 F_po).
-//   With s = s_c + u the quartic is u^2 (u^2 + 4 s_c u + 6 s_c^2) = delta/delta_s - delta_c/delta_s =: eps exactly, which has no
-//   cancellation at the tear-off double root; Newton from u = (sqrt(b^2 + 4 w) - b)/2, w = sqrt(eps), b = sqrt(6) s_c (at most
-//   3.3 % off over all eps) reaches 1e-6 in two steps, 1e-13 in four.
-// Damping (Tsuji et al. 1992, Antypov & Elliott 2011): F_d = -2 sqrt(5/6) beta sqrt(S_n m*) v_n, tensile damping allowed.
-// Tangential (Mindlin, no slip): F_t = -S_t xi - 2 sqrt(5/6) beta sqrt(S_t m*) v_t, capped at mu F_cap, then xi = -F_t/S_t.
-//   xi is turned into the current contact plane at constant length. The stored history is xi + v_t dt/2: the trapezoidal rule for
-//   d xi/dt = v_t with velocities predicted at whole steps. (Rejected: xi += v_t dt with the predicted velocity, first order, adds a
-//   damping of omega dt/4 per radian; with the half-step velocity, a second record per grain to gather, a fifth of the law's time.)
-// Rolling: constant_torque M = -mu_r R* F_cap w/|w| (w = relative spin without its normal part), linear below a stated speed;
-//   spring: elastic-plastic spring-dashpot, Ai et al. 2011 type C: k_r = 2.25 S_n (mu_r R*)^2, cap mu_r R* F_cap, dashpot
-//   eta_r 2 sqrt(I_r k_r), eta_r = 0.3, only below the cap.
+//   a_s = (2 pi Gamma R*^2 / E*)^(1/3),  delta_s = a_s^2/R*,  F_s = 4/3 E* a_s^3/R* = 8/3 pi Gamma R* = 16/9
+//   F_po,  a = a_s s^2: delta/delta_s = s^4 - s (larger root),  F/F_s = s^3 (s^3 - 3/2). Tear-off at s_c =
+//   4^(-1/3), delta = -(3/4) 4^(-1/3) delta_s, F = -5/9 F_po; made at delta = 0 (s = 1, F = -8/9 F_po). With
+//   s = s_c + u the quartic is u^2 (u^2 + 4 s_c u + 6 s_c^2) = delta/delta_s - delta_c/delta_s =: eps
+//   exactly, which has no cancellation at the tear-off double root; Newton from u = (sqrt(b^2 + 4 w) - b)/2,
+//   w = sqrt(eps), b = sqrt(6) s_c (at most 3.3 % off over all eps) reaches 1e-6 in two steps, 1e-13 in four.
+// Damping (Tsuji et al. 1992, Antypov & Elliott 2011): F_d = -2 sqrt(5/6) beta sqrt(S_n m*) v_n, tensile
+// damping allowed. Tangential (Mindlin, no slip): F_t = -S_t xi - 2 sqrt(5/6) beta sqrt(S_t m*) v_t, capped
+// at mu F_cap, then xi = -F_t/S_t.
+//   xi is turned into the current contact plane at constant length. The stored history is xi + v_t dt/2: the
+//   trapezoidal rule for d xi/dt = v_t with velocities predicted at whole steps. (Rejected: xi += v_t dt with
+//   the predicted velocity, first order, adds a damping of omega dt/4 per radian; with the half-step
+//   velocity, a second record per grain to gather, a fifth of the law's time.)
+// Rolling: constant_torque M = -mu_r R* F_cap w/|w| (w = relative spin without its normal part), linear below
+// a stated speed;
+//   spring: elastic-plastic spring-dashpot, Ai et al. 2011 type C: k_r = 2.25 S_n (mu_r R*)^2, cap mu_r R*
+//   F_cap, dashpot eta_r 2 sqrt(I_r k_r), eta_r = 0.3, only below the cap.
 #pragma once
 #include "dem/lanes.h"
 #include "dem/material.h"
@@ -27,11 +31,11 @@ namespace gradwright {
 
 /// Numbers equal for all contacts of a run.
 struct LawConstants {
-    double time_step = 0;           ///< [s]
-    double static_friction = 0;     ///< mu
-    double rolling_friction = 0;    ///< mu_r
-    double damping_factor = 0;      ///< 2 sqrt(5/6) beta
-    double rolling_speed = 1e-4;    ///< regularisation of constant_torque [m/s]
+    double time_step = 0;         ///< [s]
+    double static_friction = 0;   ///< mu
+    double rolling_friction = 0;  ///< mu_r
+    double damping_factor = 0;    ///< 2 sqrt(5/6) beta
+    double rolling_speed = 1e-4;  ///< regularisation of constant_torque [m/s]
     FrictionCap friction_cap = FrictionCap::thornton;
 };
 
@@ -44,15 +48,15 @@ struct LawFault {
 /// What the law needs of one contact (or eight).
 template <class T>
 struct Contact {
-    T nx, ny, nz;           ///< normal from j to i
-    T overlap;              ///< delta [m]
-    T vx, vy, vz;           ///< v_i - v_j, centres, predicted for this instant [m/s]
-    T wix, wiy, wiz;        ///< spin of i [rad/s]
-    T wjx, wjy, wjz;        ///< spin of j
-    T arm_i, arm_j;         ///< centre to contact point [m]
+    T nx, ny, nz;                     ///< normal from j to i
+    T overlap;                        ///< delta [m]
+    T vx, vy, vz;                     ///< v_i - v_j, centres, predicted for this instant [m/s]
+    T wix, wiy, wiz;                  ///< spin of i [rad/s]
+    T wjx, wjy, wjz;                  ///< spin of j
+    T arm_i, arm_j;                   ///< centre to contact point [m]
     T radius, mass, e_star, g_star8;  ///< R*, m*, E*, 8 G*
-    T jkr_radius;           ///< a_s [m]; 0 without adhesion
-    T touching;             ///< 1 where the contact exists already, else 0
+    T jkr_radius;                     ///< a_s [m]; 0 without adhesion
+    T touching;                       ///< 1 where the contact exists already, else 0
 };
 
 template <class T>
@@ -91,7 +95,8 @@ inline T jkr_root(T reduced_overlap) {
 }
 
 template <class T, bool kAdhesive, RollingModel kRolling>
-inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& fault, const Contact<T>& c, ContactHistory<T>& h) {
+inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& fault, const Contact<T>& c,
+                                      ContactHistory<T>& h) {
     const T zero = splat<T>(0), one = splat<T>(1);
     const T tiny = splat<T>(1e-30);
     const T dt = splat<T>(law.time_step);
@@ -134,7 +139,8 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
 
     // Tangential: velocity of i relative to j at the contact point.
     const T arm_i = fault.wrong_lever_arm ? splat<T>(0.9) * c.arm_i : c.arm_i;
-    const T sx = arm_i * c.wix + c.arm_j * c.wjx, sy = arm_i * c.wiy + c.arm_j * c.wjy, sz = arm_i * c.wiz + c.arm_j * c.wjz;
+    const T sx = arm_i * c.wix + c.arm_j * c.wjx, sy = arm_i * c.wiy + c.arm_j * c.wjy,
+            sz = arm_i * c.wiz + c.arm_j * c.wjz;
     const T vtx = c.vx - vn * c.nx - (sy * c.nz - sz * c.ny);
     const T vty = c.vy - vn * c.ny - (sz * c.nx - sx * c.nz);
     const T vtz = c.vz - vn * c.nz - (sx * c.ny - sy * c.nx);
@@ -155,7 +161,8 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
     xz = xz * turned + half * vtz;
 
     const T stiffness_t = c.g_star8 * a;
-    const T damping_t = splat<T>(fault.no_tangential_damping ? 0.0 : 1.0) * damping * root(stiffness_t * c.mass);
+    const T damping_t =
+        splat<T>(fault.no_tangential_damping ? 0.0 : 1.0) * damping * root(stiffness_t * c.mass);
     T ftx = -stiffness_t * xx - damping_t * vtx;
     T fty = -stiffness_t * xy - damping_t * vty;
     T ftz = -stiffness_t * xz - damping_t * vtz;
@@ -175,7 +182,8 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
     out.fx = alive * (fn * c.nx + ftx);
     out.fy = alive * (fn * c.ny + fty);
     out.fz = alive * (fn * c.nz + ftz);
-    const T qx = c.ny * ftz - c.nz * fty, qy = c.nz * ftx - c.nx * ftz, qz = c.nx * fty - c.ny * ftx;  // n x F_t
+    const T qx = c.ny * ftz - c.nz * fty, qy = c.nz * ftx - c.nx * ftz,
+            qz = c.nx * fty - c.ny * ftx;  // n x F_t
     out.tix = -arm_i * qx;
     out.tiy = -arm_i * qy;
     out.tiz = -arm_i * qz;
@@ -202,9 +210,11 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
             my = factor * wy;
             mz = factor * wz;
         } else {
-            const T stiffness_r = splat<T>(2.25) * stiffness_n * splat<T>(law.rolling_friction * law.rolling_friction) * c.radius * c.radius;
-            // about the contact point: 7/5 m r^2 at a wall (arm_j = arm_i there), half of it between equal grains. The smaller arm:
-            // the product of both would grow without limit on a large fixed grain, and the dashpot would take off.
+            const T stiffness_r = splat<T>(2.25) * stiffness_n *
+                                  splat<T>(law.rolling_friction * law.rolling_friction) * c.radius * c.radius;
+            // about the contact point: 7/5 m r^2 at a wall (arm_j = arm_i there), half of it between equal
+            // grains. The smaller arm: the product of both would grow without limit on a large fixed grain,
+            // and the dashpot would take off.
             const T arm = smaller(c.arm_i, c.arm_j);
             const T inertia = splat<T>(1.4) * c.mass * arm * arm;
             T rx = h.roll_x * keep, ry = h.roll_y * keep, rz = h.roll_z * keep;
@@ -219,7 +229,8 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
             sxr *= part;
             syr *= part;
             szr *= part;
-            const T dash = choose(yields, zero, splat<T>(0.6) * root(inertia * stiffness_r));  // 2 eta_r, eta_r = 0.3
+            const T dash =
+                choose(yields, zero, splat<T>(0.6) * root(inertia * stiffness_r));  // 2 eta_r, eta_r = 0.3
             mx = sxr - dash * wx;
             my = syr - dash * wy;
             mz = szr - dash * wz;

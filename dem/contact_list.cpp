@@ -1,7 +1,7 @@
-// Near pairs: the candidates close enough to touch before the next refresh, in tiles as wide as the law, with their history.
-// Rejected: testing every candidate in every step and compressing the touching ones (the usual way). It needs a fresh index for
-// the second grain of every contact in every step; here both indices live for ten to twenty steps and the law sees about 1.4 times
-// the touching pairs instead.
+// Near pairs: the candidates close enough to touch before the next refresh, in tiles as wide as the law, with
+// their history. Rejected: testing every candidate in every step and compressing the touching ones (the usual
+// way). It needs a fresh index for the second grain of every contact in every step; here both indices live
+// for ten to twenty steps and the law sees about 1.4 times the touching pairs instead.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -38,9 +38,11 @@ void Engine::KernelOf<T>::write_records() {
     inverse_inertia.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         position[i] = {s.x[i], s.y[i], s.z[i], s.radius[i]};
-        const bool still = s.vx[i] == 0 && s.vy[i] == 0 && s.vz[i] == 0 && s.wx[i] == 0 && s.wy[i] == 0 && s.wz[i] == 0;
+        const bool still =
+            s.vx[i] == 0 && s.vy[i] == 0 && s.vz[i] == 0 && s.wx[i] == 0 && s.wy[i] == 0 && s.wz[i] == 0;
         if (!known || still)
-            motion[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(s.radius[i]), S(0)};
+            motion[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]),     S(s.wx[i]),
+                         S(s.wy[i]), S(s.wz[i]), S(s.radius[i]), S(0)};
         inverse_mass[i] = 1 / s.mass[i];
         inverse_inertia[i] = 1 / (0.4 * s.mass[i] * s.radius[i] * s.radius[i]);
     }
@@ -52,14 +54,15 @@ void Engine::KernelOf<T>::write_records() {
 
 template <class T>
 void Engine::KernelOf<T>::carry_history() {
-    // Kept contacts (and their constants) move to the new candidate numbers. Slot code: s >= 0 same orientation, -2 - s turned
-    // round, -1 none.
+    // Kept contacts (and their constants) move to the new candidate numbers. Slot code: s >= 0 same
+    // orientation, -2 - s turned round, -1 none.
     const auto& new_index = e.new_index_;
     const std::size_t known = motion.empty() ? 0 : motion.size() - 2;
     AlignedVector<Motion> moved(e.state_.size() + 2);
     for (std::size_t i = 0; i < e.state_.size(); ++i) {
         const auto& s = e.state_;
-        moved[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(s.radius[i]), S(0)};
+        moved[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]),     S(s.wx[i]),
+                    S(s.wy[i]), S(s.wz[i]), S(s.radius[i]), S(0)};
     }
     for (std::size_t i = 0; i < std::min(known, new_index.size()); ++i)
         if (new_index[i] >= 0) moved[new_index[i]] = motion[i];
@@ -74,7 +77,8 @@ void Engine::KernelOf<T>::carry_history() {
         const std::int32_t lo = std::min(a, b), hi = std::max(a, b);
         for (std::int32_t c = e.candidate_first_[lo]; c < e.candidate_first_[lo + 1]; ++c) {
             if (e.candidate_[c] != hi) continue;
-            e.candidate_slot_[c] = a < b ? static_cast<std::int32_t>(slot) : -2 - static_cast<std::int32_t>(slot);
+            e.candidate_slot_[c] =
+                a < b ? static_cast<std::int32_t>(slot) : -2 - static_cast<std::int32_t>(slot);
             break;
         }
     };
@@ -198,7 +202,8 @@ void Engine::KernelOf<T>::rebuild_near() {
     in_first.assign(n + 1, 0);
 #pragma omp parallel for schedule(static, 256) num_threads(e.threads_)
     for (std::size_t j = 0; j < n; ++j)
-        for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r) in_first[j + 1] += keep[e.reverse_[r]] == 1;
+        for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r)
+            in_first[j + 1] += keep[e.reverse_[r]] == 1;
     std::partial_sum(in_first.begin(), in_first.end(), in_first.begin());
     own_record.assign(active_tiles * W, Record{});
     in_record.assign(active_slots + 1, Record{});  // the last one takes what padding lanes write
@@ -220,7 +225,8 @@ void Engine::KernelOf<T>::rebuild_walls() {
     const std::size_t n = s.size();
     const int body_count = static_cast<int>(e.bodies_.size());
     walls.swap(old_walls);
-    // Old contacts by (grain, body): slots stand in ascending order of both unless the cell order changed since.
+    // Old contacts by (grain, body): slots stand in ascending order of both unless the cell order changed
+    // since.
     struct Old {
         std::int32_t grain, body, slot;
     };
@@ -231,7 +237,9 @@ void Engine::KernelOf<T>::rebuild_walls() {
         if (t.i[lane] >= 0 && t.touching[lane] > 0)
             old.push_back({t.i[lane], t.body[lane], static_cast<std::int32_t>(slot)});
     }
-    auto before = [](const Old& a, const Old& b) { return a.grain != b.grain ? a.grain < b.grain : a.body < b.body; };
+    auto before = [](const Old& a, const Old& b) {
+        return a.grain != b.grain ? a.grain < b.grain : a.body < b.body;
+    };
     if (!std::is_sorted(old.begin(), old.end(), before)) std::sort(old.begin(), old.end(), before);
 
     // Which grains can reach which body: one bit per body.
@@ -242,8 +250,8 @@ void Engine::KernelOf<T>::rebuild_walls() {
         if (s.fixed[i]) continue;
         for (int b = 0; b < body_count; ++b) {
             if (e.body_removed_[b]) continue;
-            const auto p = nearest_point(e.bodies_[b], e.bodies_[b].speed_x * e.body_time_, e.bodies_[b].speed_z * e.body_time_,
-                                         s.x[i], s.y[i], s.z[i]);
+            const auto p = nearest_point(e.bodies_[b], e.bodies_[b].speed_x * e.body_time_,
+                                         e.bodies_[b].speed_z * e.body_time_, s.x[i], s.y[i], s.z[i]);
             if (p.distance < s.radius[i] + e.near_skin_) near[i] |= 1u << b;
         }
         wall_first[i + 1] = __builtin_popcount(near[i]);
@@ -348,18 +356,19 @@ double Engine::KernelOf<T>::coordination_sum() const {
     const auto n = static_cast<std::int32_t>(e.state_.size());
     for (const PairTile& t : tiles)
         for (int lane = 0; lane < W; ++lane)
-            if (t.i[lane] < n && t.touching[lane] > 0) ends += !e.state_.fixed[t.i[lane]] + !e.state_.fixed[t.j[lane]];
+            if (t.i[lane] < n && t.touching[lane] > 0)
+                ends += !e.state_.fixed[t.i[lane]] + !e.state_.fixed[t.j[lane]];
     for (const WallTile& t : walls)
         for (int lane = 0; lane < W; ++lane) ends += t.touching[lane] > 0;
     return ends;
 }
 
 template <class T>
-double Engine::KernelOf<T>::max_overlap_ratio() const {
+template <class Visitor>
+void Engine::KernelOf<T>::for_each_overlap(Visitor&& visit) const {
     const auto& s = e.state_;
     const auto n = static_cast<std::int32_t>(s.size());
     const double period = e.options_.period_y, inv = period > 0 ? 1 / period : 0;
-    double top = 0;
     for (const PairTile& t : tiles) {
         for (int lane = 0; lane < W; ++lane) {
             const std::int32_t i = t.i[lane], j = t.j[lane];
@@ -369,7 +378,7 @@ double Engine::KernelOf<T>::max_overlap_ratio() const {
             const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
             const double sum = s.radius[i] + s.radius[j];
             const double d2 = dx * dx + dy * dy + dz * dz;
-            if (d2 < sum * sum) top = std::max(top, (sum - std::sqrt(d2)) / std::min(s.radius[i], s.radius[j]));
+            if (d2 < sum * sum) visit((sum - std::sqrt(d2)) / std::min(s.radius[i], s.radius[j]));
         }
     }
     for (const WallTile& t : walls) {
@@ -378,18 +387,33 @@ double Engine::KernelOf<T>::max_overlap_ratio() const {
             const std::int32_t i = t.i[lane];
             const auto& body = e.bodies_[t.body[lane]];
             if (body.yield_ratio > 0) continue;  // its overlaps are watched apart, by the jam rule
-            const auto p = nearest_point(body, body.speed_x * e.body_time_, body.speed_z * e.body_time_, s.x[i], s.y[i], s.z[i]);
-            top = std::max(top, (s.radius[i] - p.distance) / s.radius[i]);
+            const auto p = nearest_point(body, body.speed_x * e.body_time_, body.speed_z * e.body_time_,
+                                         s.x[i], s.y[i], s.z[i]);
+            visit((s.radius[i] - p.distance) / s.radius[i]);
         }
     }
+}
+
+template <class T>
+double Engine::KernelOf<T>::max_overlap_ratio() const {
+    double top = 0;
+    for_each_overlap([&](double ratio) { top = std::max(top, ratio); });
     return top;
+}
+
+template <class T>
+std::size_t Engine::KernelOf<T>::contacts_beyond(double limit) const {
+    std::size_t count = 0;
+    for_each_overlap([&](double ratio) { count += ratio > limit; });
+    return count;
 }
 
 template <class T>
 double Engine::KernelOf<T>::memory_bytes() const {
     auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-    return bytes(position) + bytes(motion) + bytes(tiles) + bytes(old_tiles) + bytes(walls) + bytes(old_walls) + bytes(own_first) +
-           bytes(in_first) + bytes(own_record) + bytes(in_record) + bytes(wall_first) + bytes(keep) + bytes(park_first);
+    return bytes(position) + bytes(motion) + bytes(tiles) + bytes(old_tiles) + bytes(walls) +
+           bytes(old_walls) + bytes(own_first) + bytes(in_first) + bytes(own_record) + bytes(in_record) +
+           bytes(wall_first) + bytes(keep) + bytes(park_first);
 }
 
 template struct Engine::KernelOf<double>;

@@ -1,4 +1,5 @@
-// The contact pass: gather two grains per lane, run the law, leave force and torques in the tile. No grain is written here.
+// The contact pass: gather two grains per lane, run the law, leave force and torques in the tile. No grain is
+// written here.
 #include <algorithm>
 #include <cmath>
 
@@ -80,14 +81,16 @@ void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
             c.arm_i = mi.r - 0.5 * c.overlap;
             c.arm_j = mj.r - 0.5 * c.overlap;
         } else {
-            // positions in double: difference of coordinates and sum of radii in one fused operation per lane; the overlap from
-            // (s^2 - d^2)/(s + d) with the numerator in double, so that float enters only where its 6e-8 is relative to the overlap
+            // positions in double: difference of coordinates and sum of radii in one fused operation per
+            // lane; the overlap from (s^2 - d^2)/(s + d) with the numerator in double, so that float enters
+            // only where its 6e-8 is relative to the overlap
             const D4 turn = {-1, -1, -1, 1};
             D4 d[8];
             F8 mi[8], mj[8];
             for (int lane = 0; lane < 8; ++lane) {
                 const std::int32_t i = t.i[lane], j = t.j[lane];
-                d[lane] = *reinterpret_cast<const D4*>(&position[i]) + turn * *reinterpret_cast<const D4*>(&position[j]);
+                d[lane] = *reinterpret_cast<const D4*>(&position[i]) +
+                          turn * *reinterpret_cast<const D4*>(&position[j]);
                 mi[lane] = *reinterpret_cast<const F8*>(&motion[i]);
                 mj[lane] = *reinterpret_cast<const F8*>(&motion[j]);
             }
@@ -97,7 +100,8 @@ void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
                 d[1] -= period * round4(d[1] * inv_period);
                 d[5] -= period * round4(d[5] * inv_period);
             }
-            const D4 d2lo = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], d2hi = d[4] * d[4] + d[5] * d[5] + d[6] * d[6];
+            const D4 d2lo = d[0] * d[0] + d[1] * d[1] + d[2] * d[2],
+                     d2hi = d[4] * d[4] + d[5] * d[5] + d[6] * d[6];
             const F8 numerator = join(d[3] * d[3] - d2lo, d[7] * d[7] - d2hi);
             const F8 sum = join(d[3], d[7]);
             dx = join(d[0], d[4]);
@@ -176,7 +180,8 @@ void Engine::KernelOf<T>::wall_pass(std::size_t first, std::size_t last, double 
             const Body& body = e.bodies_[t.body[lane]];
             const Position& p = position[t.i[lane]];
             const Motion& m = motion[t.i[lane]];
-            const auto near = nearest_point(body, body.speed_x * body_time, body.speed_z * body_time, p.x, p.y, p.z);
+            const auto near =
+                nearest_point(body, body.speed_x * body_time, body.speed_z * body_time, p.x, p.y, p.z);
             n[0][lane] = S(near.nx);
             n[1][lane] = S(near.ny);
             n[2][lane] = S(near.nz);
@@ -239,12 +244,12 @@ void Engine::KernelOf<T>::wall_pass(std::size_t first, std::size_t last, double 
 #define GRADWRIGHT_PASSES(T, ADHESIVE, ROLLING)                                                \
     template void Engine::KernelOf<T>::pair_pass<ADHESIVE, ROLLING>(std::size_t, std::size_t); \
     template void Engine::KernelOf<T>::wall_pass<ADHESIVE, ROLLING>(std::size_t, std::size_t, double);
-#define GRADWRIGHT_ALL_PASSES(T)                              \
-    GRADWRIGHT_PASSES(T, true, RollingModel::none)            \
-    GRADWRIGHT_PASSES(T, false, RollingModel::none)           \
+#define GRADWRIGHT_ALL_PASSES(T)                               \
+    GRADWRIGHT_PASSES(T, true, RollingModel::none)             \
+    GRADWRIGHT_PASSES(T, false, RollingModel::none)            \
     GRADWRIGHT_PASSES(T, true, RollingModel::constant_torque)  \
     GRADWRIGHT_PASSES(T, false, RollingModel::constant_torque) \
-    GRADWRIGHT_PASSES(T, true, RollingModel::spring)          \
+    GRADWRIGHT_PASSES(T, true, RollingModel::spring)           \
     GRADWRIGHT_PASSES(T, false, RollingModel::spring)
 GRADWRIGHT_ALL_PASSES(double)
 GRADWRIGHT_ALL_PASSES(F8)

@@ -16,9 +16,12 @@ namespace gradwright {
 namespace {
 
 PairConstants pair_of(const Material& a, const Material& b, double softening) {
-    // 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2, 1/G* = (2-nu1)/G1 + (2-nu2)/G2, G = E/(2(1+nu)); E = infinity contributes nothing.
+    // 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2, 1/G* = (2-nu1)/G1 + (2-nu2)/G2, G = E/(2(1+nu)); E = infinity
+    // contributes nothing.
     auto compliance = [&](const Material& m) {
-        return std::isinf(m.youngs_modulus) ? 0.0 : (1 - m.poissons_ratio * m.poissons_ratio) / (m.youngs_modulus * softening);
+        return std::isinf(m.youngs_modulus)
+                   ? 0.0
+                   : (1 - m.poissons_ratio * m.poissons_ratio) / (m.youngs_modulus * softening);
     };
     auto shear_compliance = [&](const Material& m) {
         if (std::isinf(m.youngs_modulus)) return 0.0;
@@ -45,7 +48,8 @@ Engine::Engine(const EngineOptions& options) : options_(options) {
     law_.rolling_speed = options.interaction.rolling_regularisation_speed;
     law_.friction_cap = options.interaction.friction_cap;
     adhesion_ = options.interaction.work_of_adhesion;
-    if (options.adhesion_scaling == AdhesionScaling::cohesion_number) adhesion_ *= std::pow(options.softening, 0.4);
+    if (options.adhesion_scaling == AdhesionScaling::cohesion_number)
+        adhesion_ *= std::pow(options.softening, 0.4);
     threads_ = options.threads > 0 ? options.threads : omp_get_max_threads();
     if (options.precision == Precision::double_law)
         kernel_ = std::make_unique<KernelOf<double>>(*this);
@@ -57,7 +61,7 @@ Engine::~Engine() = default;
 
 int Engine::add_grain(const GrainSpec& g) {
     auto& s = state_;
-    const int id = s.id.empty() ? 0 : *std::max_element(s.id.begin(), s.id.end()) + 1;
+    const int id = next_id_++;
     s.for_each_array([](auto& array) { array.push_back({}); });
     const std::size_t i = s.size() - 1;
     s.x[i] = g.x;
@@ -71,7 +75,8 @@ int Engine::add_grain(const GrainSpec& g) {
     s.wz[i] = g.wz;
     s.radius[i] = g.radius;
     s.material[i] = static_cast<std::uint8_t>(g.material);
-    s.mass[i] = options_.materials.at(g.material).density * 4.0 / 3.0 * std::numbers::pi * g.radius * g.radius * g.radius;
+    s.mass[i] = options_.materials.at(g.material).density * 4.0 / 3.0 * std::numbers::pi * g.radius *
+                g.radius * g.radius;
     s.fixed[i] = g.fixed;
     s.id[i] = id;
     largest_radius_ = std::max(largest_radius_, g.radius);
@@ -102,7 +107,9 @@ void Engine::set_material(std::size_t i, int material) {
     lists_valid_ = false;
 }
 
-void Engine::refresh() { lists_valid_ = false; }
+void Engine::refresh() {
+    lists_valid_ = false;
+}
 
 void Engine::wake_all() {
     std::fill(state_.asleep.begin(), state_.asleep.end(), 0);
@@ -156,8 +163,16 @@ double Engine::kinetic_energy() const {
     return sum;
 }
 
-double Engine::max_overlap_ratio() { return kernel_->max_overlap_ratio(); }
-std::size_t Engine::contacts() const { return kernel_->contacts(); }
+double Engine::max_overlap_ratio() {
+    return kernel_->max_overlap_ratio();
+}
+double Engine::share_overlapping(double ratio) {
+    const double grains = static_cast<double>(mobile());
+    return grains > 0 ? static_cast<double>(kernel_->contacts_beyond(ratio)) / grains : 0;
+}
+std::size_t Engine::contacts() const {
+    return kernel_->contacts();
+}
 
 double Engine::mean_coordination() {
     const double grains = static_cast<double>(mobile());
@@ -169,14 +184,19 @@ std::vector<std::size_t> Engine::overlapping_body(int body, double ratio) const 
     const Body& b = bodies_.at(body);
     for (std::size_t i = 0; i < state_.size(); ++i) {
         if (state_.fixed[i] || body_removed_[body]) continue;
-        const auto p = nearest_point(b, b.speed_x * body_time_, b.speed_z * body_time_, state_.x[i], state_.y[i], state_.z[i]);
+        const auto p = nearest_point(b, b.speed_x * body_time_, b.speed_z * body_time_, state_.x[i],
+                                     state_.y[i], state_.z[i]);
         if (state_.radius[i] - p.distance > ratio * state_.radius[i]) out.push_back(i);
     }
     return out;
 }
 
-BodyForce Engine::force_on_body(int body) const { return kernel_->force_on_body(body); }
-BodyForce Engine::force_on_fixed() const { return kernel_->force_on_fixed(); }
+BodyForce Engine::force_on_body(int body) const {
+    return kernel_->force_on_body(body);
+}
+BodyForce Engine::force_on_fixed() const {
+    return kernel_->force_on_fixed();
+}
 
 double Engine::memory_bytes() const {
     double bytes = kernel_->memory_bytes();
@@ -215,18 +235,24 @@ void Engine::check_health() {
     bool finite = true;
     for (std::size_t i = 0; i < state_.size(); ++i) {
         if (state_.fixed[i]) continue;
-        const double v2 = state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i];
+        const double v2 =
+            state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i];
         if (!std::isfinite(v2 + state_.x[i] + state_.y[i] + state_.z[i])) finite = false;
         top = std::max(top, v2);
     }
-    if (!finite) failed_ = "not finite";
-    else if (top > options_.speed_limit * options_.speed_limit) failed_ = "speed";
+    if (!finite)
+        failed_ = "not finite";
+    else if (top > options_.speed_limit * options_.speed_limit)
+        failed_ = "speed";
 }
 
 long Engine::advance(long steps) {
     long done = 0;
-    // Who sleeps is decided when the near list is made: in a bed almost at rest that must not wait for the list to run out.
-    const long sleep_look = options_.sleep ? std::max(1L, std::lround(options_.sleep_time / options_.time_step)) : std::numeric_limits<long>::max();
+    // Who sleeps is decided when the near list is made: in a bed almost at rest that must not wait for the
+    // list to run out.
+    const long sleep_look = options_.sleep
+                                ? std::max(1L, std::lround(options_.sleep_time / options_.time_step))
+                                : std::numeric_limits<long>::max();
     while (done < steps && failed_.empty()) {
         if (!lists_valid_ || travel_ > near_skin_ || steps_since_near_ >= sleep_look) {
             const double start = omp_get_wtime();
@@ -234,10 +260,12 @@ long Engine::advance(long steps) {
             if (!rebuild) {
                 double moved = 0;
                 for (const std::int32_t i : awake_) {
-                    const double dx = state_.x[i] - built_x_[i], dy = state_.y[i] - built_y_[i], dz = state_.z[i] - built_z_[i];
+                    const double dx = state_.x[i] - built_x_[i], dy = state_.y[i] - built_y_[i],
+                                 dz = state_.z[i] - built_z_[i];
                     moved = std::max(moved, dx * dx + dy * dy + dz * dz);
                 }
-                // two grains may have approached by twice the largest move; what is left must cover the near skin
+                // two grains may have approached by twice the largest move; what is left must cover the near
+                // skin
                 rebuild = 2 * std::sqrt(moved) + near_skin_ * 1.5 > skin_;
             }
             check_health();

@@ -1,10 +1,12 @@
 // The engine: grains and bodies in, motion out. One instance is one run; nothing is global.
-// A step reads as named stages: touching pairs and walls -> contact law -> sums per grain -> integrate (-> refresh lists if moved).
+// A step reads as named stages: touching pairs and walls -> contact law -> sums per grain -> integrate (->
+// refresh lists if moved).
 //
-// Two lists: candidates within `skin` (rebuilt with the cell order, about every 100-200 steps) and, of those, the near pairs within
-// `near_skin` (about every 10-20 steps), which are what the law sees. A near pair keeps its place between refreshes, so that the
-// law reads and writes its history in place and one grain's sums run over fixed slots in fixed order: same bits on any number of
-// threads, no atomics. (Measured alternative: test all candidates every step and compress, see contact_list.cpp.)
+// Two lists: candidates within `skin` (rebuilt with the cell order, about every 100-200 steps) and, of those,
+// the near pairs within `near_skin` (about every 10-20 steps), which are what the law sees. A near pair keeps
+// its place between refreshes, so that the law reads and writes its history in place and one grain's sums run
+// over fixed slots in fixed order: same bits on any number of threads, no atomics. (Measured alternative:
+// test all candidates every step and compress, see contact_list.cpp.)
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,9 +28,9 @@ struct EngineOptions {
     Interaction interaction;
     double softening = 1;  ///< E' = s E; with `cohesion_number` Gamma' = Gamma s^(2/5)
     AdhesionScaling adhesion_scaling = AdhesionScaling::cohesion_number;
-    double time_step = 0;                          ///< [s], > 0
+    double time_step = 0;                           ///< [s], > 0
     std::array<double, 3> gravity = {0, 0, -9.81};  ///< [m/s2]
-    double period_y = 0;                           ///< [m], 0 = not periodic
+    double period_y = 0;                            ///< [m], 0 = not periodic
     Precision precision = Precision::single_law;
     bool sleep = false;
     double sleep_speed = 0.5e-3;   ///< grains slower than this ... [m/s]
@@ -78,7 +80,8 @@ class Engine {
     void remove_grains(const std::function<bool(std::size_t index)>& predicate);
     /// Give grain index i another material: its mass and its contacts' constants change, its springs stay.
     void set_material(std::size_t i, int material);
-    /// After changing materials, radii or positions from outside: contacts keep their springs where they persist.
+    /// After changing materials, radii or positions from outside: contacts keep their springs where they
+    /// persist.
     void refresh();
     void wake_all();
     /// Multiply every velocity and spin (a quench while packing).
@@ -105,8 +108,10 @@ class Engine {
     double kinetic_energy() const;  ///< [J]
     double max_overlap_ratio();     ///< overlap / smaller radius now, over near pairs and walls
     double max_overlap_ratio_seen() const { return max_overlap_seen_; }
-    double mean_coordination();     ///< contacts per mobile grain (floor and walls counted once)
-    std::size_t contacts() const;   ///< pair contacts alive
+    /// Share of mobile grains in a contact whose overlap exceeds `ratio` of the smaller radius now [-].
+    double share_overlapping(double ratio);
+    double mean_coordination();    ///< contacts per mobile grain (floor and walls counted once)
+    std::size_t contacts() const;  ///< pair contacts alive
     /// Grain indices whose overlap with a body exceeds `ratio` of their radius now.
     std::vector<std::size_t> overlapping_body(int body, double ratio) const;
     BodyForce force_on_body(int body) const;  ///< of the last force evaluation
@@ -115,12 +120,17 @@ class Engine {
     /// "" while sound, else what went wrong: "speed" or "not finite".
     const std::string& failed() const { return failed_; }
     std::string state_hash() const;  ///< of ids, positions and velocities, independent of the storage order
-    PairConstants pair_constants(int a, int b) const { return pairs_[a * static_cast<int>(options_.materials.size()) + b]; }
+    PairConstants pair_constants(int a, int b) const {
+        return pairs_[a * static_cast<int>(options_.materials.size()) + b];
+    }
     double work_of_adhesion() const { return adhesion_; }  ///< scaled Gamma' [J/m2]
     int threads() const { return threads_; }
 
     /// Bodies stand still until this instant counts: their shift is speed x (time since).
-    void start_bodies() { body_time_ = 0; bodies_move_ = true; }
+    void start_bodies() {
+        body_time_ = 0;
+        bodies_move_ = true;
+    }
     void stop_bodies() { bodies_move_ = false; }
 
   private:
@@ -157,8 +167,9 @@ class Engine {
     std::vector<double> built_x_, built_y_, built_z_;
     std::vector<std::int32_t> candidate_first_, candidate_, candidate_owner_, candidate_slot_;
     std::vector<std::int32_t> reverse_first_, reverse_;  ///< candidate numbers in which a grain is the second
-    std::vector<std::int32_t> new_index_;                ///< of the last permutation: old index -> new index, -1 removed
+    std::vector<std::int32_t> new_index_;  ///< of the last permutation: old index -> new index, -1 removed
     std::vector<std::int32_t> awake_;
+    std::int32_t next_id_ = 0;
 
     std::unique_ptr<Kernel> kernel_;
 };

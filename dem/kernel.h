@@ -1,4 +1,5 @@
-// Inside of the engine: near-pair tiles, records and passes, once for each number type of the law. Private to dem/.
+// Inside of the engine: near-pair tiles, records and passes, once for each number type of the law. Private to
+// dem/.
 #pragma once
 #include <array>
 
@@ -15,16 +16,18 @@ struct Engine::Kernel {
     virtual ~Kernel() = default;
     virtual Predicted predicted(std::size_t i) const = 0;
     virtual void scale_motion(double factor) = 0;
-    virtual void write_records() = 0;      ///< all grains, after anything but a step changed them
-    virtual void rebuild_near() = 0;       ///< near pairs and wall slots from the candidates; history carried over
-    virtual void carry_history() = 0;      ///< after rebuild_candidates: map kept contacts onto the new candidates
-    virtual long run(long steps) = 0;      ///< steps done; ends early when the near list has run out
+    virtual void write_records() = 0;  ///< all grains, after anything but a step changed them
+    virtual void rebuild_near() = 0;  ///< near pairs and wall slots from the candidates; history carried over
+    virtual void
+    carry_history() = 0;  ///< after rebuild_candidates: map kept contacts onto the new candidates
+    virtual long run(long steps) = 0;  ///< steps done; ends early when the near list has run out
     virtual BodyForce force_on_body(int body) const = 0;
     virtual BodyForce force_on_fixed() const = 0;
     virtual std::size_t contacts() const = 0;
     virtual double coordination_sum() const = 0;
     virtual void forget_body(int body) = 0;
     virtual double max_overlap_ratio() const = 0;
+    virtual std::size_t contacts_beyond(double ratio) const = 0;  ///< overlap / smaller radius
     virtual double memory_bytes() const = 0;
 };
 
@@ -48,7 +51,8 @@ struct Engine::KernelOf final : Engine::Kernel {
         S xi[3][W], roll[3][W];
         std::int32_t in_place[W];  ///< where the second grain's record goes
     };
-    /// What a contact gives one grain: force, torque, 2 spare. 32 bytes for the wide law, so that a sum is one add a contact.
+    /// What a contact gives one grain: force, torque, 2 spare. 32 bytes for the wide law, so that a sum is
+    /// one add a contact.
     struct alignas(8 * sizeof(S)) Record {
         S value[8];
     };
@@ -67,13 +71,16 @@ struct Engine::KernelOf final : Engine::Kernel {
     AlignedVector<Motion> motion;
     AlignedVector<PairTile> tiles, old_tiles;
     AlignedVector<WallTile> walls, old_walls;
-    /// First grains' records in slot order, second grains' in order of the second grain: each grain reads two short runs. (AoSoA
-    /// output with lane-wise sums took 28 ns a grain against 57 ns in all; records of both grains 32 bytes each take a quarter.)
+    /// First grains' records in slot order, second grains' in order of the second grain: each grain reads two
+    /// short runs. (AoSoA output with lane-wise sums took 28 ns a grain against 57 ns in all; records of both
+    /// grains 32 bytes each take a quarter.)
     AlignedVector<Record> own_record, in_record;
     std::vector<double> inverse_mass, inverse_inertia;
-    std::size_t active_slots = 0, parked_slots = 0;  ///< parked: both ends asleep or fixed, history kept, not computed
+    std::size_t active_slots = 0,
+                parked_slots = 0;  ///< parked: both ends asleep or fixed, history kept, not computed
     std::size_t wall_slots = 0;
-    std::vector<std::int32_t> own_first;  ///< slots in which grain i is the first: own_first[i] .. own_first[i+1]
+    std::vector<std::int32_t>
+        own_first;  ///< slots in which grain i is the first: own_first[i] .. own_first[i+1]
     std::vector<std::int32_t> in_first;
     std::vector<std::int32_t> wall_first;
     std::vector<std::uint8_t> keep;  ///< per candidate: 1 active, 2 parked
@@ -100,7 +107,10 @@ struct Engine::KernelOf final : Engine::Kernel {
     std::size_t contacts() const override;
     double coordination_sum() const override;
     void forget_body(int body) override;
+    template <class Visitor>
+    void for_each_overlap(Visitor&& visit) const;
     double max_overlap_ratio() const override;
+    std::size_t contacts_beyond(double ratio) const override;
     double memory_bytes() const override;
 };
 

@@ -1,6 +1,7 @@
-// Number types of the contact law: `double` (one contact at a time, the reference) and `F8` (eight contacts in float). The law is
-// one text over either (contact_law.h). Plain GCC vector extensions: the compiler maps F8 to one AVX register or two SSE ones, so
-// the same source serves any x86-64 or Arm machine; std::experimental::simd would add nothing here but compile time.
+// Number types of the contact law: `double` (one contact at a time, the reference) and `F8` (eight contacts
+// in float). The law is one text over either (contact_law.h). Plain GCC vector extensions: the compiler maps
+// F8 to one AVX register or two SSE ones, so the same source serves any x86-64 or Arm machine;
+// std::experimental::simd would add nothing here but compile time.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -37,7 +38,9 @@ inline T splat(double value) {
     }
 }
 
-inline double root(double v) { return std::sqrt(v); }
+inline double root(double v) {
+    return std::sqrt(v);
+}
 inline F8 root(F8 v) {
 #ifdef __AVX__
     return __builtin_ia32_sqrtps256(v);
@@ -47,14 +50,30 @@ inline F8 root(F8 v) {
     return out;
 #endif
 }
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline F8 larger(F8 a, F8 b) { return a > b ? a : b; }
-inline double smaller(double a, double b) { return a < b ? a : b; }
-inline F8 smaller(F8 a, F8 b) { return a < b ? a : b; }
-inline double choose(bool mask, double a, double b) { return mask ? a : b; }
-inline F8 choose(I8 mask, F8 a, F8 b) { return mask ? a : b; }
-inline double magnitude(double v) { return std::fabs(v); }
-inline F8 magnitude(F8 v) { return v < 0.0f ? -v : v; }
+inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+inline F8 larger(F8 a, F8 b) {
+    return a > b ? a : b;
+}
+inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+inline F8 smaller(F8 a, F8 b) {
+    return a < b ? a : b;
+}
+inline double choose(bool mask, double a, double b) {
+    return mask ? a : b;
+}
+inline F8 choose(I8 mask, F8 a, F8 b) {
+    return mask ? a : b;
+}
+inline double magnitude(double v) {
+    return std::fabs(v);
+}
+inline F8 magnitude(F8 v) {
+    return v < 0.0f ? -v : v;
+}
 
 /// Loads and stores from plain arrays of Lane<T>::Scalar, aligned to the lane width.
 template <class T>

@@ -8,7 +8,8 @@ namespace gradwright {
 
 /// State of a run. `ok` or a named physical failure with the knob to turn.
 struct RunHealth {
-    std::string status = "not_run";  ///< ok | diverged | jammed | does_not_flow | starved | not_settled | overlap | interrupted
+    std::string status = "not_run";  ///< ok | diverged | jammed | does_not_flow | starved | not_settled |
+                                     ///< overlap | interrupted
     std::string reason;              ///< one sentence, with the knob to turn
     double max_overlap_ratio = 0;    ///< max overlap / smaller radius seen [-]
     std::vector<std::string> warnings;
@@ -16,8 +17,9 @@ struct RunHealth {
 };
 
 /// Laid grains of one spread: mobile grains whose centre is over the platform and below z = 0 at the end.
-/// One entry per grain in every vector. Frames: origin in the dispenser (x from 0), after levelling, before the pass;
-/// deposit_x from the platform's near edge; both y unwrapped, so deposit_y - origin_y is the lateral way.
+/// One entry per grain in every vector. Frames: origin in the dispenser (x from 0), after levelling, before
+/// the pass; deposit_x from the platform's near edge; both y unwrapped, so deposit_y - origin_y is the
+/// lateral way.
 struct Layer {
     std::vector<double> origin_x, origin_y, origin_z;     ///< [m]
     std::vector<double> deposit_x, deposit_y, deposit_z;  ///< [m]
@@ -28,10 +30,10 @@ struct Layer {
     bool periodic = true;            ///< y periodic with `width`
     double width = 0;                ///< modelled width W [m]
     double dispenser_length = 0, platform_length = 0, gap = 0;  ///< [m]
-    double dosed_solid_volume = 0;     ///< solid above z = 0 at the start [m3]
-    double overflow_solid_volume = 0;  ///< solid beyond the platform at the end [m3]
-    double overflow_solid_volume_a = 0;  ///< of it A (0 when not labelled) [m3]
-    double bed_packing = 0;              ///< packing fraction of the settled bed [-]
+    double dosed_solid_volume = 0;                              ///< solid above z = 0 at the start [m3]
+    double overflow_solid_volume = 0;                           ///< solid beyond the platform at the end [m3]
+    double overflow_solid_volume_a = 0;                         ///< of it A (0 when not labelled) [m3]
+    double bed_packing = 0;                                     ///< packing fraction of the settled bed [-]
     std::uint64_t packing_seed = 0;
 
     std::size_t size() const { return volume.size(); }
@@ -44,7 +46,7 @@ struct Layer {
 
 /// Positions of every mobile grain at one instant, for pictures and VTK.
 struct Snapshot {
-    double time = 0, blade_x = 0;         ///< [s], [m]
+    double time = 0, blade_x = 0;        ///< [s], [m]
     std::vector<float> x, y, z, radius;  ///< [m], scene frame
     std::vector<std::uint8_t> is_a;
     std::vector<float> speed;  ///< [m/s]

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -7,8 +8,6 @@
 #include <numeric>
 #include <unordered_map>
 
-#include <fmt/format.h>
-
 #include "dem/bed.h"
 #include "dem/random.h"
 
@@ -17,13 +16,15 @@ namespace {
 
 constexpr double kSphere = 4.0 / 3.0 * std::numbers::pi;
 
-/// Random sequential placement, largest first, in a box at packing `fill` (0.28: far below the 0.38 where placement jams).
+/// Random sequential placement, largest first, in a box at packing `fill` (0.28: far below the 0.38 where
+/// placement jams).
 struct Placement {
     std::vector<double> x, y, z, radius;
     std::vector<std::uint8_t> material;
 };
 
-Placement pour(const Scene& scene, const PartitionCurve* partition, double solid_volume, double z_low, double fill, Random& random) {
+Placement pour(const Scene& scene, const PartitionCurve* partition, double solid_volume, double z_low,
+               double fill, Random& random) {
     const double length = scene.dispenser_length, width = scene.width;
     const double height = solid_volume / (fill * length * width);
     // grains of each chamber by its share of the plan area
@@ -39,14 +40,17 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
         const auto& size = scene.powder[k].size;
         const auto count = static_cast<std::size_t>(std::llround(volume[k] / size.mean_grain_volume()));
         if (count == 0) continue;
-        for (const double d : size.draw(count, random.next())) grains.push_back({0.5 * d, static_cast<std::uint8_t>(k)});
+        for (const double d : size.draw(count, random.next()))
+            grains.push_back({0.5 * d, static_cast<std::uint8_t>(k)});
     }
-    std::stable_sort(grains.begin(), grains.end(), [](const Grain& a, const Grain& b) { return a.radius > b.radius; });
+    std::stable_sort(grains.begin(), grains.end(),
+                     [](const Grain& a, const Grain& b) { return a.radius > b.radius; });
 
     Placement out;
     const double cell = grains.empty() ? 1 : 2 * grains.front().radius;
     const bool periodic = scene.sides == Sides::periodic;
-    const int nx = std::max(1, static_cast<int>(length / cell)), ny = std::max(1, static_cast<int>(width / cell));
+    const int nx = std::max(1, static_cast<int>(length / cell)),
+              ny = std::max(1, static_cast<int>(width / cell));
     const int nz = static_cast<int>(height * 1.6 / cell) + 2;
     std::vector<std::vector<std::int32_t>> cells(static_cast<std::size_t>(nx) * ny * nz);
     double top = height;
@@ -62,7 +66,8 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
                 if ((g.material == 0) != (side > 0)) continue;
                 if (std::fabs(side) < 0.5 * scene.plate_thickness + r && scene.plate_thickness > 0) continue;
             }
-            const int cx = std::min(static_cast<int>(px / length * nx), nx - 1), cy = std::min(static_cast<int>(py / width * ny), ny - 1);
+            const int cx = std::min(static_cast<int>(px / length * nx), nx - 1),
+                      cy = std::min(static_cast<int>(py / width * ny), ny - 1);
             const int cz = std::clamp(static_cast<int>((pz - z_low) / cell), 0, nz - 1);
             bool free = true;
             for (int ix = std::max(cx - 1, 0); free && ix <= std::min(cx + 1, nx - 1); ++ix)
@@ -70,7 +75,8 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
                     const int iy = periodic ? (cy + jy + ny) % ny : cy + jy;
                     if (iy < 0 || iy >= ny) continue;
                     for (int iz = std::max(cz - 1, 0); free && iz <= std::min(cz + 1, nz - 1); ++iz)
-                        for (const std::int32_t j : cells[(static_cast<std::size_t>(ix) * ny + iy) * nz + iz]) {
+                        for (const std::int32_t j :
+                             cells[(static_cast<std::size_t>(ix) * ny + iy) * nz + iz]) {
                             double dy = py - out.y[j];
                             if (periodic) dy -= width * std::nearbyint(dy / width);
                             const double dx = px - out.x[j], dz = pz - out.z[j], s = r + out.radius[j];
@@ -81,7 +87,8 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
                         }
                 }
             if (!free) continue;
-            cells[(static_cast<std::size_t>(cx) * ny + cy) * nz + cz].push_back(static_cast<std::int32_t>(out.x.size()));
+            cells[(static_cast<std::size_t>(cx) * ny + cy) * nz + cz].push_back(
+                static_cast<std::int32_t>(out.x.size()));
             out.x.push_back(px);
             out.y.push_back(py);
             out.z.push_back(pz);
@@ -98,11 +105,14 @@ struct Settling {
     const Scene& scene;
     const SpreadOptions& options;
     double weight = 0;
-    double speed_number() const { return engine.max_speed() / std::sqrt(scene.gravity * scene.powder[0].size.d50); }
+    double speed_number() const {
+        return engine.max_speed() / std::sqrt(scene.gravity * scene.powder[0].size.d50);
+    }
     /// Upward force of floor and walls over the weight of the mobile grains.
     double carried() const {
         double up = -engine.force_on_fixed().z;
-        for (std::size_t b = 0; b < engine.bodies().size(); ++b) up -= engine.force_on_body(static_cast<int>(b)).z;
+        for (std::size_t b = 0; b < engine.bodies().size(); ++b)
+            up -= engine.force_on_body(static_cast<int>(b)).z;
         return up / weight;
     }
     void weigh() {
@@ -110,8 +120,9 @@ struct Settling {
         for (std::size_t i = 0; i < engine.state().size(); ++i)
             if (!engine.state().fixed[i]) weight += engine.state().mass[i] * scene.gravity;
     }
-    /// Runs until accepted or `most` steps are spent. Grains at rest sleep meanwhile, so that the last rollers cost little; before
-    /// a bed is accepted all are woken and must stand for 750 steps: speed number < 0.01, floor and walls carry the weight within 1 %.
+    /// Runs until accepted or `most` steps are spent. Grains at rest sleep meanwhile, so that the last
+    /// rollers cost little; before a bed is accepted all are woken and must stand for 750 steps: speed number
+    /// < 0.01, floor and walls carry the weight within 1 %.
     bool settle(long most, const char* stage) {
         weigh();
         engine.wake_all();
@@ -121,7 +132,8 @@ struct Settling {
             if (options.stop && options.stop->load()) return false;
             engine.advance(burst);
             const double done = static_cast<double>(engine.steps() - start);
-            if (options.progress) options.progress({stage, 0.99 * (1 - std::exp(-3 * done / static_cast<double>(most)))});
+            if (options.progress)
+                options.progress({stage, 0.99 * (1 - std::exp(-3 * done / static_cast<double>(most)))});
             if (speed_number() > 0.01) continue;
             engine.wake_all();
             engine.advance(3 * burst);
@@ -134,14 +146,16 @@ struct Settling {
 }  // namespace
 
 double rayleigh_time_step(double radius, double density, double shear_modulus, double poissons_ratio) {
-    return std::numbers::pi * radius * std::sqrt(density / shear_modulus) / (0.1631 * poissons_ratio + 0.8766);
+    return std::numbers::pi * radius * std::sqrt(density / shear_modulus) /
+           (0.1631 * poissons_ratio + 0.8766);
 }
 
 double scene_time_step(const Scene& scene) {
     double least = 1e9;
     for (const Powder& p : scene.powder) {
         const double g = p.material.youngs_modulus * scene.softening / (2 * (1 + p.material.poissons_ratio));
-        least = std::min(least, rayleigh_time_step(0.5 * p.size.cut_low, p.material.density, g, p.material.poissons_ratio));
+        least = std::min(least, rayleigh_time_step(0.5 * p.size.cut_low, p.material.density, g,
+                                                   p.material.poissons_ratio));
     }
     return scene.rayleigh_fraction * least;
 }
@@ -161,6 +175,29 @@ EngineOptions engine_options(const Scene& scene, int threads) {
     return o;
 }
 
+void add_end_walls(Engine& engine, const Scene& scene) {
+    for (const double sign : {1.0, -1.0}) {
+        Body end;
+        end.axis = 0;
+        end.sign = sign;
+        end.offset = sign > 0 ? 0 : scene.dispenser_length;
+        end.material = kWallMaterial;
+        engine.add_body(end);
+    }
+}
+
+void add_bed(Engine& engine, const Bed& bed, bool labelled) {
+    for (std::size_t k = 0; k < bed.x.size(); ++k) {
+        GrainSpec g;
+        g.x = bed.x[k];
+        g.y = bed.y[k];
+        g.z = bed.z[k];
+        g.radius = bed.radius[k];
+        g.material = labelled ? bed.material[k] : 0;
+        engine.add_grain(g);
+    }
+}
+
 void add_side_walls(Engine& engine, const Scene& scene) {
     if (scene.sides == Sides::periodic) return;
     for (const double sign : {1.0, -1.0}) {
@@ -174,10 +211,13 @@ void add_side_walls(Engine& engine, const Scene& scene) {
     }
 }
 
-std::vector<GrainSpec> rough_surface(double x0, double x1, double width, double plane, double roughness, std::uint64_t seed) {
+std::vector<GrainSpec> rough_surface(double x0, double x1, double width, double plane, double roughness,
+                                     std::uint64_t seed) {
     std::vector<GrainSpec> out;
     const double r = 0.5 * roughness, spacing = 0.95 * roughness;
-    const int rows = std::max(2, 2 * static_cast<int>(std::ceil(width / (spacing * std::sqrt(3.0)))));  // even: fits a periodic width
+    const int rows = std::max(
+        2,
+        2 * static_cast<int>(std::ceil(width / (spacing * std::sqrt(3.0)))));  // even: fits a periodic width
     const int columns = std::max(1, static_cast<int>(std::ceil((x1 - x0) / spacing)));
     const double dy = width / rows, dx = (x1 - x0) / columns;
     Random random(seed);
@@ -195,36 +235,44 @@ std::vector<GrainSpec> rough_surface(double x0, double x1, double width, double 
     return out;
 }
 
-double solid_between(const std::vector<double>& z, const std::vector<double>& radius, double low, double high) {
+double solid_between(const std::vector<double>& z, const std::vector<double>& radius, double low,
+                     double high) {
     // Volume of a sphere below a plane at height t above its centre: pi (2 r^3/3 + r^2 t - t^3/3), |t| <= r.
     auto below = [](double r, double t) {
         t = std::clamp(t, -r, r);
         return std::numbers::pi * (2 * r * r * r / 3 + r * r * t - t * t * t / 3);
     };
     double sum = 0;
-    for (std::size_t i = 0; i < z.size(); ++i) sum += below(radius[i], high - z[i]) - below(radius[i], low - z[i]);
+    for (std::size_t i = 0; i < z.size(); ++i)
+        sum += below(radius[i], high - z[i]) - below(radius[i], low - z[i]);
     return sum;
 }
 
-Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options, RunHealth& health) {
+Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options,
+             RunHealth& health) {
     const double start = omp_get_wtime();
     Bed bed;
     Random random(scene.seed * 0x9e3779b97f4a7c15ull + 17);
     const double area = scene.dispenser_length * scene.width;
     const double d50 = std::max(scene.powder[0].size.d50, scene.powder[1].size.d50);
     const double wanted_height = scene.bed_depth + scene.dose_height;
-    // Adhesive frictional beds of these powders settle at 0.50-0.60; pour for 0.60 plus one and a half grains, the rest is levelled off.
+    // Adhesive frictional beds of these powders settle at 0.50-0.60; pour for 0.60 plus one and a half
+    // grains, the rest is levelled off.
     const double solid = 0.60 * area * (wanted_height + 1.5 * d50);
     const double z_floor = -scene.bed_depth;
 
-    // Rolling while packing is always the elastic-plastic spring: constant_torque has no rest (grains creep down at up to 4e-4 m/s
-    // below its regularisation, twice what "settled" allows). The spread uses the scene's own model.
+    // Rolling while packing is always the elastic-plastic spring: constant_torque has no rest (grains creep
+    // down at up to 4e-4 m/s below its regularisation, twice what "settled" allows). The spread uses the
+    // scene's own model.
     EngineOptions eo = engine_options(scene, options.threads);
-    if (eo.interaction.rolling_model == RollingModel::constant_torque) eo.interaction.rolling_model = RollingModel::spring;
+    if (eo.interaction.rolling_model == RollingModel::constant_torque)
+        eo.interaction.rolling_model = RollingModel::spring;
     eo.sleep = true;
     eo.sleep_speed = 0.01 * std::sqrt(scene.gravity * scene.powder[0].size.d50);
     Engine engine(eo);
-    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, z_floor, scene.roughness, scene.seed ^ 0xf100f)) engine.add_grain(g);
+    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, z_floor, scene.roughness,
+                                       scene.seed ^ 0xf100f))
+        engine.add_grain(g);
     Placement poured = pour(scene, partition, solid, z_floor + 0.4 * scene.roughness, 0.30, random);
     for (std::size_t k = 0; k < poured.x.size(); ++k) {
         GrainSpec g;
@@ -236,14 +284,7 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
         g.material = poured.material[k];
         engine.add_grain(g);
     }
-    for (const double sign : {1.0, -1.0}) {
-        Body end;
-        end.axis = 0;
-        end.sign = sign;
-        end.offset = sign > 0 ? 0 : scene.dispenser_length;
-        end.material = kWallMaterial;
-        engine.add_body(end);
-    }
+    add_end_walls(engine, scene);
     add_side_walls(engine, scene);
     int plate = -1;
     if (scene.plate_thickness > 0 && partition) {
@@ -252,7 +293,8 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
         // the ends run on straight to the walls, as the partition's rule says
         body.curve = partition->points;
         auto extend = [&](PlanPoint& tip, const PlanPoint& inner) {
-            const double l = std::hypot(tip.x - inner.x, tip.y - inner.y), far = 2 * (scene.dispenser_length + scene.width);
+            const double l = std::hypot(tip.x - inner.x, tip.y - inner.y),
+                         far = 2 * (scene.dispenser_length + scene.width);
             tip = {tip.x + (tip.x - inner.x) / l * far, tip.y + (tip.y - inner.y) / l * far};
         };
         const auto second = body.curve[1], before = body.curve[body.curve.size() - 2];
@@ -271,9 +313,11 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     bool settled = settling.settle(most, "pack");
 
     auto relabel = [&] {
-        // Where both powders share sizes, a grain belongs to the side on which it came to rest; else it keeps its powder.
+        // Where both powders share sizes, a grain belongs to the side on which it came to rest; else it keeps
+        // its powder.
         const auto &a = scene.powder[0].size, &b = scene.powder[1].size;
-        const bool same = a.d10 == b.d10 && a.d50 == b.d50 && a.d90 == b.d90 && a.cut_low == b.cut_low && a.cut_high == b.cut_high;
+        const bool same = a.d10 == b.d10 && a.d50 == b.d50 && a.d90 == b.d90 && a.cut_low == b.cut_low &&
+                          a.cut_high == b.cut_high;
         if (!partition || !same) return false;
         auto& s = engine.state();
         bool changed = false;
@@ -296,16 +340,19 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
 
     if (!engine.failed().empty()) {
         health.status = "diverged";
-        health.reason = fmt::format("packing diverged ({}); lower numerics.time_step.rayleigh_fraction (now {})", engine.failed(),
-                                    scene.rayleigh_fraction);
+        health.reason =
+            fmt::format("packing diverged ({}); lower numerics.time_step.rayleigh_fraction (now {})",
+                        engine.failed(), scene.rayleigh_fraction);
     } else if (options.stop && options.stop->load()) {
         health.status = "interrupted";
         health.reason = "stopped while packing";
     } else if (!settled) {
         health.status = "not_settled";
-        health.reason = fmt::format("the bed did not come to rest in {} steps (speed number {:.3g}, carried weight {:.3g}); lower the "
-                                    "work of adhesion or the time step",
-                                    most, settling.speed_number(), settling.carried());
+        health.reason = fmt::format(
+            "the bed did not come to rest in {} steps (speed number {:.3g}, carried weight {:.3g}); lower "
+            "the "
+            "work of adhesion or the time step",
+            most, settling.speed_number(), settling.carried());
     } else {
         health.status = "ok";
     }

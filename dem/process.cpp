@@ -1,4 +1,6 @@
-// The process: pack -> label -> level -> dose -> spread -> layer (physics.md 1). Each stage is a function; run_spread strings them.
+// The process: pack -> label -> level -> dose -> spread -> layer (physics.md 1). Each stage is a function;
+// run_spread strings them.
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -6,8 +8,6 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-
-#include <fmt/format.h>
 
 #include "dem/bed.h"
 #include "dem/cache_file.h"
@@ -19,22 +19,28 @@ namespace {
 
 constexpr double kFar = 1.0;  // depth of the solid bodies [m]: anything beyond the scene
 
-// A grain below the edge that meets the dispenser's rim is pinched between blade and rim, whatever the stiffness (friction 0.64
-// locks the wedge). The blade presses it with no more than the force at an overlap of 0.6 % r, so that the grains it is pressed
-// against keep within the 3 % rule (at 2 % r the neighbours of a pinched grain reached 8 %).
+// A grain below the edge that meets the dispenser's rim is pinched between blade and rim, whatever the
+// stiffness (friction 0.64 locks the wedge). The blade presses it with no more than the force at an overlap
+// of 0.6 % r, so that the grains it is pressed against keep within the 3 % rule (at 2 % r the neighbours of a
+// pinched grain reached 8 %).
 constexpr double kBladeYield = 0.006;
 constexpr double kJamOverlap = 0.05;  // of the radius: such a grain counts as pinched
 
-double volume_of(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
+double volume_of(double r) {
+    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
 
-/// Level and dose: the bed already stands raised (z = 0 is the blade's plane). Cut it so that the solid above z = 0 is
-/// (h - c) x area x bed packing in each chamber. Returns false when the bed is too low.
+/// Level and dose: the bed already stands raised (z = 0 is the blade's plane). Cut it so that the solid above
+/// z = 0 is (h - c) x area x bed packing in each chamber. Returns false when the bed is too low.
 bool level(Bed& bed, const Scene& scene, const PartitionCurve* partition, double& dosed) {
     const double plan = scene.dispenser_length * scene.width;
     const double area_a = partition ? partition->area_a(scene.dispenser_length, scene.width) : plan;
-    const double wanted[2] = {(scene.dose_height - scene.headspace[0]) * area_a * bed.facts.packing_fraction,
-                              (scene.dose_height - scene.headspace[1]) * (plan - area_a) * bed.facts.packing_fraction};
-    auto chamber = [&](std::size_t i) { return partition && !partition->on_side_a(bed.x[i], bed.y[i]) ? 1 : 0; };
+    const double wanted[2] = {
+        (scene.dose_height - scene.headspace[0]) * area_a * bed.facts.packing_fraction,
+        (scene.dose_height - scene.headspace[1]) * (plan - area_a) * bed.facts.packing_fraction};
+    auto chamber = [&](std::size_t i) {
+        return partition && !partition->on_side_a(bed.x[i], bed.y[i]) ? 1 : 0;
+    };
     std::vector<std::size_t> above[2];
     for (std::size_t i = 0; i < bed.x.size(); ++i)
         if (bed.z[i] > 0) above[chamber(i)].push_back(i);
@@ -45,8 +51,10 @@ bool level(Bed& bed, const Scene& scene, const PartitionCurve* partition, double
         double sum = 0;
         for (const std::size_t i : above[k]) {
             const double v = volume_of(bed.radius[i]);
-            if (sum + 0.5 * v > wanted[k]) drop[i] = 1;
-            else sum += v;
+            if (sum + 0.5 * v > wanted[k])
+                drop[i] = 1;
+            else
+                sum += v;
         }
         if (sum < 0.97 * wanted[k]) return false;
         dosed += sum;
@@ -72,10 +80,12 @@ struct MachineBodies {
 
 MachineBodies build_machine(Engine& engine, const Scene& scene) {
     const double platform = scene.dispenser_length + scene.land, end = platform + scene.platform_length;
-    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth, scene.roughness, scene.seed ^ 0xf100f))
+    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth,
+                                       scene.roughness, scene.seed ^ 0xf100f))
         engine.add_grain(g);
     if (scene.substrate == Substrate::fused)
-        for (const auto& g : rough_surface(platform, end, scene.width, -scene.gap, scene.roughness, scene.seed ^ 0x5b57a7e))
+        for (const auto& g :
+             rough_surface(platform, end, scene.width, -scene.gap, scene.roughness, scene.seed ^ 0x5b57a7e))
             engine.add_grain(g);
     auto box = [&](double x0, double x1, double top) {
         Body b;
@@ -144,14 +154,19 @@ double heap_length(const Engine& engine, const Scene& scene, double blade_x, dou
 std::string spread_bytes(const SpreadResult& r) {
     std::string out;
     const Layer& l = r.layer;
-    for (const auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z, &l.volume, &l.radius}) put(out, *v);
+    for (const auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z,
+                          &l.volume, &l.radius})
+        put(out, *v);
     put(out, l.is_a);
     const auto& f = r.bed;
-    put(out, std::vector<double>{l.dosed_solid_volume, l.overflow_solid_volume, l.overflow_solid_volume_a, l.bed_packing,
-                                 f.packing_fraction, f.mean_coordination, f.max_overlap_ratio, f.speed_number, f.carried_weight_ratio,
-                                 double(f.steps), f.seconds_cold, double(r.grains), double(r.fixed_grains), double(r.pinched_grains),
-                                 double(r.steps), r.grain_steps, r.all_grain_steps, r.time_step, r.bond_number, r.seconds_cold,
-                                 r.health.max_overlap_ratio});
+    put(out,
+        std::vector<double>{l.dosed_solid_volume,   l.overflow_solid_volume,  l.overflow_solid_volume_a,
+                            l.bed_packing,          f.packing_fraction,       f.mean_coordination,
+                            f.max_overlap_ratio,    f.speed_number,           f.carried_weight_ratio,
+                            double(f.steps),        f.seconds_cold,           double(r.grains),
+                            double(r.fixed_grains), double(r.pinched_grains), double(r.steps),
+                            r.grain_steps,          r.all_grain_steps,        r.time_step,
+                            r.bond_number,          r.seconds_cold,           r.health.max_overlap_ratio});
     put(out, f.made_d10_d50_d90);
     put(out, std::vector<char>(r.state_hash.begin(), r.state_hash.end()));
     std::string warnings;
@@ -163,26 +178,32 @@ std::string spread_bytes(const SpreadResult& r) {
 bool read_spread(const std::string& bytes, const Scene& scene, SpreadResult& r) {
     std::size_t at = 0;
     Layer& l = r.layer;
-    for (auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z, &l.volume, &l.radius})
+    for (auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z,
+                    &l.volume, &l.radius})
         if (!take(bytes, at, *v)) return false;
     std::vector<double> n;
     std::vector<char> hash, warnings;
     auto& f = r.bed;
-    if (!take(bytes, at, l.is_a) || !take(bytes, at, n) || n.size() != 21 || !take(bytes, at, f.made_d10_d50_d90) ||
-        !take(bytes, at, hash) || !take(bytes, at, warnings))
+    if (!take(bytes, at, l.is_a) || !take(bytes, at, n) || n.size() != 21 ||
+        !take(bytes, at, f.made_d10_d50_d90) || !take(bytes, at, hash) || !take(bytes, at, warnings))
         return false;
-    l.dosed_solid_volume = n[0], l.overflow_solid_volume = n[1], l.overflow_solid_volume_a = n[2], l.bed_packing = n[3];
+    l.dosed_solid_volume = n[0], l.overflow_solid_volume = n[1], l.overflow_solid_volume_a = n[2],
+    l.bed_packing = n[3];
     f.packing_fraction = n[4], f.mean_coordination = n[5], f.max_overlap_ratio = n[6], f.speed_number = n[7];
     f.carried_weight_ratio = n[8], f.steps = long(n[9]), f.seconds_cold = n[10], f.from_cache = true;
-    r.grains = long(n[11]), r.fixed_grains = long(n[12]), r.pinched_grains = long(n[13]), r.steps = long(n[14]);
-    r.grain_steps = n[15], r.all_grain_steps = n[16], r.time_step = n[17], r.bond_number = n[18], r.seconds_cold = n[19];
+    r.grains = long(n[11]), r.fixed_grains = long(n[12]), r.pinched_grains = long(n[13]),
+    r.steps = long(n[14]);
+    r.grain_steps = n[15], r.all_grain_steps = n[16], r.time_step = n[17], r.bond_number = n[18],
+    r.seconds_cold = n[19];
     r.health.max_overlap_ratio = n[20];
     r.health.status = "ok";
     r.state_hash.assign(hash.begin(), hash.end());
     std::string line;
     for (const char c : warnings) {
-        if (c != '\n') line += c;
-        else r.health.warnings.push_back(std::move(line)), line.clear();
+        if (c != '\n')
+            line += c;
+        else
+            r.health.warnings.push_back(std::move(line)), line.clear();
     }
     l.periodic = scene.sides == Sides::periodic;
     l.width = scene.width;
@@ -198,14 +219,15 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
 }  // namespace
 
 SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options) {
-    // A spread without labels is an origin map: kept, because it answers every partition. Labelled ones are never read back: a
-    // confirmation is always spread.
+    // A spread without labels is an origin map: kept, because it answers every partition. Labelled ones are
+    // never read back: a confirmation is always spread.
     const bool keep = !partition && !options.cache_folder.empty() && options.snapshots == 0;
     if (!keep) return spread_now(scene, partition, options);
     const double start = omp_get_wtime();
     const std::string key = fmt::format("spread format {}\n{}", kEngineFormat, scene.canonical_text());
     SpreadResult out;
-    if (const auto bytes = read_cache(options.cache_folder, "map", key); bytes && read_spread(*bytes, scene, out)) {
+    if (const auto bytes = read_cache(options.cache_folder, "map", key);
+        bytes && read_spread(*bytes, scene, out)) {
         out.seconds = omp_get_wtime() - start;
         return out;
     }
@@ -230,26 +252,20 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
     double dosed = 0;
     if (!level(bed, scene, partition, dosed)) {
         out.health.status = "not_settled";
-        out.health.reason = "the settled bed is too low for the dose; raise numerics.bed_depth or lower the dosage factor";
+        out.health.reason =
+            "the settled bed is too low for the dose; raise numerics.bed_depth or lower the dosage factor";
         return finish();
     }
 
     EngineOptions eo = engine_options(scene, options.threads);
     eo.sleep = scene.sleep;
-    const double platform = scene.dispenser_length + scene.land, platform_end = platform + scene.platform_length;
+    const double platform = scene.dispenser_length + scene.land,
+                 platform_end = platform + scene.platform_length;
     eo.remove_beyond_x = platform_end + scene.second_land;
     Engine engine(eo);
     const MachineBodies machine = build_machine(engine, scene);
     const int first_mobile = static_cast<int>(engine.state().size());
-    for (std::size_t k = 0; k < bed.x.size(); ++k) {
-        GrainSpec g;
-        g.x = bed.x[k];
-        g.y = bed.y[k];
-        g.z = bed.z[k];
-        g.radius = bed.radius[k];
-        g.material = partition ? bed.material[k] : 0;
-        engine.add_grain(g);
-    }
+    add_bed(engine, bed, partition != nullptr);
     out.grains = static_cast<long>(bed.x.size());
     out.fixed_grains = first_mobile;
     out.time_step = engine.time_step();
@@ -280,15 +296,17 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
             fail("interrupted", "stopped while spreading");
             break;
         }
-        engine.advance(std::max<long>(1, std::min<long>(burst, std::llround((goal - blade_x()) / (scene.blade_speed * dt)) + 1)));
+        engine.advance(std::max<long>(
+            1, std::min<long>(burst, std::llround((goal - blade_x()) / (scene.blade_speed * dt)) + 1)));
         if (!engine.failed().empty()) {
-            fail("diverged", fmt::format("grains moved at more than {:.3g} m/s or lost their numbers ({}); lower "
-                                         "numerics.time_step.rayleigh_fraction (now {})",
-                                         eo.speed_limit, engine.failed(), scene.rayleigh_fraction));
+            fail("diverged",
+                 fmt::format("grains moved at more than {:.3g} m/s or lost their numbers ({}); lower "
+                             "numerics.time_step.rayleigh_fraction (now {})",
+                             eo.speed_limit, engine.failed(), scene.rayleigh_fraction));
             break;
         }
-        // Pinched at the rim: it rolls between blade and land at half the blade's speed, so the blade is past it after twice its
-        // thickness. Pinched for longer: it is dragged along, a jam.
+        // Pinched at the rim: it rolls between blade and land at half the blade's speed, so the blade is past
+        // it after twice its thickness. Pinched for longer: it is dragged along, a jam.
         std::map<int, double> still;
         for (const std::size_t i : engine.overlapping_body(machine.blade, kJamOverlap)) {
             const int id = engine.state().id[i];
@@ -297,24 +315,36 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
             still[id] = known == pinched.end() ? blade_x() : known->second;
         }
         pinched.swap(still);
-        const auto longest = std::min_element(pinched.begin(), pinched.end(), [](auto& a, auto& b) { return a.second < b.second; });
-        if (longest != pinched.end() && blade_x() - longest->second > 2 * scene.blade_thickness + 10 * scene.powder[0].size.d50) {
-            fail("jammed", fmt::format("a grain has been dragged in the nip over {:.2f} mm; raise the gap or round the blade tip",
+        const auto longest = std::min_element(pinched.begin(), pinched.end(),
+                                              [](auto& a, auto& b) { return a.second < b.second; });
+        if (longest != pinched.end() &&
+            blade_x() - longest->second > 2 * scene.blade_thickness + 10 * scene.powder[0].size.d50) {
+            fail("jammed", fmt::format("a grain has been dragged in the nip over {:.2f} mm; raise the gap or "
+                                       "round the blade tip",
                                        1e3 * (blade_x() - longest->second)));
             break;
         }
-        if (engine.max_overlap_ratio_seen() > 0.10) {
-            fail("overlap", fmt::format("overlap {:.1f} % of the radius; raise numerics.softening (now {:.2g}) or lower the speeds",
-                                        100 * engine.max_overlap_ratio_seen(), scene.softening));
+        // Ten per cent of the radius in more than one grain of a thousand: the softening is wrong for this
+        // scene. One grain wedged between blade and rim for a moment is a warning instead (its overlap is
+        // reported).
+        const double crushed = engine.share_overlapping(0.10);
+        if (crushed > 1e-3) {
+            fail("overlap", fmt::format("{:.2f} % of the grains overlap by more than 10 % of the radius; "
+                                        "raise numerics.softening (now "
+                                        "{:.2g}) or lower the speeds",
+                                        100 * crushed, scene.softening));
             break;
         }
         if (!goal_known && blade_x() >= platform_end) {
-            goal = platform_end + std::min(heap_length(engine, scene, platform_end, bed.facts.packing_fraction), 0.9 * scene.second_land);
+            goal =
+                platform_end + std::min(heap_length(engine, scene, platform_end, bed.facts.packing_fraction),
+                                        0.9 * scene.second_land);
             goal = std::max(goal, platform_end + 0.1e-3);
             goal_known = true;
         }
         const double fraction = std::clamp((blade_x() - start_x) / total, 0.0, 1.0);
-        if (options.snapshots > 0 && fraction * (options.snapshots + 1) >= next_shot && next_shot <= options.snapshots) {
+        if (options.snapshots > 0 && fraction * (options.snapshots + 1) >= next_shot &&
+            next_shot <= options.snapshots) {
             out.snapshots.push_back(snapshot_of(engine, blade_x()));
             ++next_shot;
         }
@@ -323,8 +353,8 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
     const double last_blade = blade_x();
     engine.stop_bodies();
     // End: mean kinetic energy per grain below 1e-3 m g d.
-    const double quiet = 1e-3 * scene.powder[0].material.density * scene.powder[0].size.mean_grain_volume() * scene.gravity *
-                         scene.powder[0].size.d50 * static_cast<double>(out.grains);
+    const double quiet = 1e-3 * scene.powder[0].material.density * scene.powder[0].size.mean_grain_volume() *
+                         scene.gravity * scene.powder[0].size.d50 * static_cast<double>(out.grains);
     for (int k = 0; k < 40 && out.health.ok() && engine.kinetic_energy() > quiet; ++k) engine.advance(500);
 
     out.steps = engine.steps();
@@ -332,8 +362,9 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
     out.all_grain_steps = static_cast<double>(out.steps) * static_cast<double>(out.grains);
     out.health.max_overlap_ratio = engine.max_overlap_ratio_seen();
     if (out.health.max_overlap_ratio > 0.03)
-        out.health.warnings.push_back(fmt::format("overlap reached {:.1f} % of the radius (3 % is the rule): raise numerics.softening",
-                                                  100 * out.health.max_overlap_ratio));
+        out.health.warnings.push_back(
+            fmt::format("overlap reached {:.1f} % of the radius (3 % is the rule): raise numerics.softening",
+                        100 * out.health.max_overlap_ratio));
     out.snapshots.push_back(snapshot_of(engine, last_blade));
     out.state_hash = engine.state_hash();
 
@@ -359,7 +390,8 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
         const std::size_t k = static_cast<std::size_t>(s.id[i] - first_mobile);
         present[k] = 1;
         const double d50 = scene.powder[0].size.d50;
-        if (bed.z[k] < -scene.bed_depth + scene.powder[0].size.d90 && bed.x[k] > 2 * d50 && bed.x[k] < scene.dispenser_length - 4 * d50)
+        if (bed.z[k] < -scene.bed_depth + scene.powder[0].size.d90 && bed.x[k] > 2 * d50 &&
+            bed.x[k] < scene.dispenser_length - 4 * d50)
             floor_moves.push_back(std::hypot(s.x[i] - bed.x[k], s.z[i] - bed.z[k]));
         if (s.x[i] >= platform_end) {
             layer.overflow_solid_volume += volume_of(s.radius[i]);
@@ -386,7 +418,8 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
         const double p95 = floor_moves[floor_moves.size() * 95 / 100];
         if (p95 > 0.1 * scene.powder[0].size.d50)
             out.health.warnings.push_back(
-                fmt::format("the modelled bed is shallow: grains at its floor moved {:.2f} D50 (95th percentile, rule 0.1); raise "
+                fmt::format("the modelled bed is shallow: grains at its floor moved {:.2f} D50 (95th "
+                            "percentile, rule 0.1); raise "
                             "numerics.bed_depth (now {:.0f} um) to see whether the result changes",
                             p95 / scene.powder[0].size.d50, scene.bed_depth * 1e6));
     }
@@ -396,7 +429,8 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
         for (std::size_t k = 0; k < layer.size(); ++k)
             if (layer.deposit_x[k] > 0.9 * scene.platform_length) last += layer.volume[k];
         if (last * 10 < layer.solid_volume() / 3)
-            out.health.warnings.push_back("the heap ran dry before the platform's end: raise the dosage factor");
+            out.health.warnings.push_back(
+                "the heap ran dry before the platform's end: raise the dosage factor");
     }
     if (out.health.ok() && layer.size() == 0 && out.grains > 0)
         fail("starved", "no grain was laid on the platform; raise the dosage factor or the gap");

@@ -37,13 +37,14 @@ std::string Scene::canonical_text() const {
     number("sides", static_cast<int>(sides));
     number("plate_thickness", plate_thickness);
     auto material = [&](const char* key, const Material& m) {
-        out += fmt::format("{} = {:.17g} {:.17g} {:.17g}\n", key, m.density, m.youngs_modulus, m.poissons_ratio);
+        out +=
+            fmt::format("{} = {:.17g} {:.17g} {:.17g}\n", key, m.density, m.youngs_modulus, m.poissons_ratio);
     };
     for (int k = 0; k < 2; ++k) {
         material(k == 0 ? "powder_a" : "powder_b", powder[k].material);
         const auto& size = powder[k].size;
-        out += fmt::format("size = {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", size.d10, size.d50, size.d90, size.cut_low,
-                           size.cut_high);
+        out += fmt::format("size = {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", size.d10, size.d50, size.d90,
+                           size.cut_low, size.cut_high);
     }
     material("wall", wall);
     number("static_friction", interaction.static_friction);

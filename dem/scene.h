@@ -1,5 +1,6 @@
 // Scene: everything one spread needs, as plain SI numbers. Constant while a run lives; hashable.
-// Frame (physics.md 1): x = spreading direction, y = across (graded), z = up; z = 0 is the blade edge = rim = lands.
+// Frame (physics.md 1): x = spreading direction, y = across (graded), z = up; z = 0 is the blade edge = rim =
+// lands.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,7 +15,10 @@ namespace gradwright {
 
 enum class Substrate { fused, plate };
 enum class Sides { periodic, frictional, frictionless };
-enum class Precision { single_law, double_law };  ///< number type of the contact law; integration is always double
+enum class Precision {
+    single_law,
+    double_law
+};  ///< number type of the contact law; integration is always double
 
 struct Powder {
     Material material;
@@ -35,8 +39,9 @@ struct Scene {
     double blade_speed = 0.1;          ///< [m/s]
     // process
     double dose_height = 120e-6;  ///< h, rise of the dispenser floor [m]
-    std::array<double, 2> headspace = {0, 0};  ///< c of chamber A, B below the rim before raising [m], 0 <= c < h
-    double gap = 143e-6;          ///< substrate mean plane to blade edge [m]
+    std::array<double, 2> headspace = {
+        0, 0};                       ///< c of chamber A, B below the rim before raising [m], 0 <= c < h
+    double gap = 143e-6;             ///< substrate mean plane to blade edge [m]
     double layer_thickness = 40e-6;  ///< [m]
     Substrate substrate = Substrate::fused;
     double roughness = 40e-6;  ///< diameter of the fixed grains of a fused substrate and of the bed floor [m]

@@ -21,8 +21,8 @@ struct SizeDistribution {
     double number_quantile(double p) const;
     /// Mean volume of one grain, by number, after the cut [m3].
     double mean_grain_volume() const;
-    /// `count` diameters [m]: stratified draw over the number distribution (so that a small set already has the
-    /// distribution's quantiles), in shuffled order; the same seed gives the same bits.
+    /// `count` diameters [m]: stratified draw over the number distribution (so that a small set already has
+    /// the distribution's quantiles), in shuffled order; the same seed gives the same bits.
     std::vector<double> draw(std::size_t count, std::uint64_t seed) const;
 };
 

@@ -17,16 +17,16 @@ struct Progress {
 };
 
 struct SpreadOptions {
-    int threads = 0;              ///< 0 = OpenMP's default
-    std::string cache_folder;     ///< settled beds; empty = no cache
-    int snapshots = 0;            ///< instants kept between first and last; 0 = none but first and last
+    int threads = 0;           ///< 0 = OpenMP's default
+    std::string cache_folder;  ///< settled beds; empty = no cache
+    int snapshots = 0;         ///< instants kept between first and last; 0 = none but first and last
     std::function<void(const Progress&)> progress;
     const std::atomic<bool>* stop = nullptr;  ///< set by a signal: the run ends with status "interrupted"
 };
 
 struct BedFacts {
     double packing_fraction = 0, mean_coordination = 0, max_overlap_ratio = 0;
-    double speed_number = 0;         ///< max speed / sqrt(g D50)
+    double speed_number = 0;          ///< max speed / sqrt(g D50)
     double carried_weight_ratio = 0;  ///< floor and wall forces over weight; accepted within 1 %
     long steps = 0;
     bool from_cache = false;
@@ -41,19 +41,21 @@ struct SpreadResult {
     std::vector<Snapshot> snapshots;  ///< first = levelled and raised bed, last = the end
     long grains = 0;                  ///< mobile grains in the spread
     long fixed_grains = 0;
-    long pinched_grains = 0;  ///< pressed into the yielding blade by more than 5 % of their radius, mostly at the dispenser's rim
+    long pinched_grains = 0;  ///< pressed into the yielding blade by more than 5 % of their radius, mostly at
+                              ///< the dispenser's rim
     long steps = 0;
-    double grain_steps = 0;  ///< awake grain-steps: forces evaluated
-    double all_grain_steps = 0;  ///< steps x mobile grains, sleeping ones included
-    double time_step = 0;        ///< [s]
-    double bond_number = 0;      ///< F_po/(m g) of the median grain, as computed
+    double grain_steps = 0;                ///< awake grain-steps: forces evaluated
+    double all_grain_steps = 0;            ///< steps x mobile grains, sleeping ones included
+    double time_step = 0;                  ///< [s]
+    double bond_number = 0;                ///< F_po/(m g) of the median grain, as computed
     double seconds = 0, seconds_cold = 0;  ///< wall; cold adds the stored cost of what came from a cache
-    std::string state_hash;  ///< of positions and velocities at the end
+    std::string state_hash;                ///< of positions and velocities at the end
 };
 
-/// One spread. `partition`: null = no labels (all grains have powder A's material and sizes: an origin-map run);
-/// else chamber A is filled with powder A on the curve's left and B on its right, each with its own material.
-/// Physical failure is a status in `health`, not an exception; the curve and scene must have been validated.
+/// One spread. `partition`: null = no labels (all grains have powder A's material and sizes: an origin-map
+/// run); else chamber A is filled with powder A on the curve's left and B on its right, each with its own
+/// material. Physical failure is a status in `health`, not an exception; the curve and scene must have been
+/// validated.
 SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options);
 
 /// What `check` tells before anything runs.

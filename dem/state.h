@@ -12,7 +12,9 @@ struct AlignedAllocator {
     AlignedAllocator() = default;
     template <class U>
     AlignedAllocator(const AlignedAllocator<U>&) {}
-    T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
+    T* allocate(std::size_t n) {
+        return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64)));
+    }
     void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
     template <class U>
     bool operator==(const AlignedAllocator<U>&) const {
@@ -24,15 +26,15 @@ using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
 /// Velocities and spins stand at the last half step (leapfrog form of velocity Verlet).
 struct State {
-    std::vector<double> x, y, z;        ///< [m], y unwrapped when periodic
-    std::vector<double> vx, vy, vz;     ///< [m/s]
-    std::vector<double> wx, wy, wz;     ///< [rad/s]
-    std::vector<double> radius, mass;   ///< [m], [kg]
+    std::vector<double> x, y, z;       ///< [m], y unwrapped when periodic
+    std::vector<double> vx, vy, vz;    ///< [m/s]
+    std::vector<double> wx, wy, wz;    ///< [rad/s]
+    std::vector<double> radius, mass;  ///< [m], [kg]
     std::vector<std::int32_t> id;
     std::vector<std::uint8_t> material;  ///< index into EngineOptions::materials
     std::vector<std::uint8_t> fixed;     ///< 1: never moves (rough floors)
     std::vector<std::uint8_t> asleep;
-    std::vector<std::int32_t> quiet;     ///< steps at rest so far
+    std::vector<std::int32_t> quiet;  ///< steps at rest so far
 
     std::size_t size() const { return x.size(); }
 

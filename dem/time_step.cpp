@@ -1,6 +1,6 @@
 // The step: contact law over near pairs and walls -> sums per grain in fixed order -> integrate.
-// Velocity Verlet in leapfrog form: v(t+dt/2) = v(t-dt/2) + a(t) dt, x(t+dt) = x(t) + v(t+dt/2) dt; the velocity that damping and
-// friction see at t+dt is predicted as v(t+dt/2) + a(t) dt/2.
+// Velocity Verlet in leapfrog form: v(t+dt/2) = v(t-dt/2) + a(t) dt, x(t+dt) = x(t) + v(t+dt/2) dt; the
+// velocity that damping and friction see at t+dt is predicted as v(t+dt/2) + a(t) dt/2.
 #include <omp.h>
 
 #include <algorithm>
@@ -23,7 +23,8 @@ double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, doub
         Sum f = {};
         for (std::int32_t slot = own_first[i]; slot < own_first[i + 1]; ++slot)
             f += *reinterpret_cast<const Sum*>(&own_record[slot]);
-        for (std::int32_t slot = in_first[i]; slot < in_first[i + 1]; ++slot) f += *reinterpret_cast<const Sum*>(&in_record[slot]);
+        for (std::int32_t slot = in_first[i]; slot < in_first[i + 1]; ++slot)
+            f += *reinterpret_cast<const Sum*>(&in_record[slot]);
         for (std::int32_t slot = wall_first[i]; slot < wall_first[i + 1]; ++slot) {
             const WallTile& t = walls[slot / W];
             const int lane = slot % W;
@@ -69,12 +70,14 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const int threads = static_cast<int>(std::clamp<std::size_t>(awake / 200, 1, e.threads_));
     double body_top = 0;
     for (std::size_t b = 0; b < e.bodies_.size(); ++b)
-        if (!e.body_removed_[b]) body_top = std::max({body_top, std::fabs(e.bodies_[b].speed_x), std::fabs(e.bodies_[b].speed_z)});
+        if (!e.body_removed_[b])
+            body_top = std::max({body_top, std::fabs(e.bodies_[b].speed_x), std::fabs(e.bodies_[b].speed_z)});
     if (!e.bodies_move_) body_top = 0;
 
     std::vector<double> tops(threads * 8, 0.0);
     long done = 0;
-    double travel = e.travel_, law_seconds = 0, grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
+    double travel = e.travel_, law_seconds = 0,
+           grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
     const double body_time = e.body_time_;
     const bool first_kick = e.first_kick_;
 #pragma omp parallel num_threads(threads)
@@ -105,7 +108,9 @@ long Engine::KernelOf<T>::run_with(long steps) {
             double top = 0;
             for (int k = 0; k < all; ++k) top = std::max(top, tops[k * 8]);
             top = std::sqrt(top);
-            my_travel += dt * (top + std::max(top, body_top));  // two grains, or a grain and a body, close in by no more
+            my_travel +=
+                dt *
+                (top + std::max(top, body_top));  // two grains, or a grain and a body, close in by no more
             my_done = step + 1;
             // `not (a <= b)`: a speed that is not a number ends the block too
             if (!(my_travel <= e.near_skin_)) break;
@@ -131,13 +136,17 @@ template <class T>
 long Engine::KernelOf<T>::run(long steps) {
     const auto& interaction = e.options_.interaction;
     const bool adhesive = e.adhesion_ > 0;
-    const RollingModel rolling = interaction.rolling_friction > 0 ? interaction.rolling_model : RollingModel::none;
+    const RollingModel rolling =
+        interaction.rolling_friction > 0 ? interaction.rolling_model : RollingModel::none;
     // chosen once per block of steps: what the scene does not need is not computed
     if (rolling == RollingModel::none)
-        return adhesive ? run_with<true, RollingModel::none>(steps) : run_with<false, RollingModel::none>(steps);
+        return adhesive ? run_with<true, RollingModel::none>(steps)
+                        : run_with<false, RollingModel::none>(steps);
     if (rolling == RollingModel::constant_torque)
-        return adhesive ? run_with<true, RollingModel::constant_torque>(steps) : run_with<false, RollingModel::constant_torque>(steps);
-    return adhesive ? run_with<true, RollingModel::spring>(steps) : run_with<false, RollingModel::spring>(steps);
+        return adhesive ? run_with<true, RollingModel::constant_torque>(steps)
+                        : run_with<false, RollingModel::constant_torque>(steps);
+    return adhesive ? run_with<true, RollingModel::spring>(steps)
+                    : run_with<false, RollingModel::spring>(steps);
 }
 
 template long Engine::KernelOf<double>::run(long);

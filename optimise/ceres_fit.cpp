@@ -137,8 +137,8 @@ std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const
         const PartitionFamily family(space, length, width, {above, rising});
         add(family, family.fit_samples(closed_form_curve(study, family.orientation(), quantile)));
     }
-    // Folded curves, where the family allows them: they trade grains from both ends of the dispenser against each other,
-    // which is what cancels the drift of the heap's turnover.
+    // Folded curves, where the family allows them: they trade grains from both ends of the dispenser against
+    // each other, which is what cancels the drift of the heap's turnover.
     if (space.family == Family::polyline && !space.monotone && space.knots >= 3)
         for (const Fold fold : {Fold::valley, Fold::ridge}) {
             const PartitionFamily family(space, length, width, {above, !above});

@@ -109,13 +109,15 @@ void judge(const Study& study, Evaluation& evaluation) {
         return;
     }
 
-    evaluation.misfit = misfit(objective.norm, evaluation.profile.gi, evaluation.target, evaluation.weight,
-                               evaluation.profile.standard_error, objective.tolerance, evaluation.profile.degrees);
+    evaluation.misfit =
+        misfit(objective.norm, evaluation.profile.gi, evaluation.target, evaluation.weight,
+               evaluation.profile.standard_error, objective.tolerance, evaluation.profile.degrees);
     const std::vector<double> no_drift(bins, 0.0);
     double drift = 0;
     if (counting_drift > 0) {
-        evaluation.drift_misfit = misfit(Norm::rmse, evaluation.drift.difference, no_drift, drift_weight,
-                                         evaluation.drift.standard_error, objective.x_drift_tolerance, evaluation.drift.degrees);
+        evaluation.drift_misfit =
+            misfit(Norm::rmse, evaluation.drift.difference, no_drift, drift_weight,
+                   evaluation.drift.standard_error, objective.x_drift_tolerance, evaluation.drift.degrees);
         drift = evaluation.drift_misfit.value;
         // The same bins everywhere: the number beside the misfit is the number the verdict is about.
         evaluation.drift.value = drift;

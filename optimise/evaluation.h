@@ -1,4 +1,5 @@
-// One finished evaluation of one design at one fidelity, and the interface behind which every fidelity stands.
+// One finished evaluation of one design at one fidelity, and the interface behind which every fidelity
+// stands.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,21 +22,24 @@ struct Evaluation {
     GradationProfile profile;
     XDrift drift;
     GradationMap map;  ///< full only; map: relabelled
-    GradationProfile plain_check;  ///< map only: plain bins of the same strips tiled over the width; empty otherwise
+    GradationProfile
+        plain_check;  ///< map only: plain bins of the same strips tiled over the width; empty otherwise
     std::vector<double> target, weight;  ///< per bin
     Misfit misfit, drift_misfit;
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;
     double waste_a_share = 0;  ///< A's share of the overflow [-]
     double objective = 0;      ///< what a search minimises
-    /// map only: where each sixth of the platform was laid from, mean and local standard deviation of origin_x by
-    /// volume, as shares of the dispenser's length; NaN where nothing lies. The heap's turnover, in numbers.
+    /// map only: where each sixth of the platform was laid from, mean and local standard deviation of
+    /// origin_x by volume, as shares of the dispenser's length; NaN where nothing lies. The heap's turnover,
+    /// in numbers.
     std::vector<double> origin_mean, origin_deviation;
     double kinematic_error_bound = 0;  ///< 1 - f where f is known, else 1
     long grains = 0, steps = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;
     int spreads = 0;  ///< DEM spreads whose result this used for the first time
     std::string state_hash;
-    std::vector<double> residuals;  ///< sqrt(w) (gi - g) per counting bin, then sqrt(x_drift_weight) drift per bin
+    std::vector<double>
+        residuals;  ///< sqrt(w) (gi - g) per counting bin, then sqrt(x_drift_weight) drift per bin
 };
 
 /// Design -> Evaluation. "Not evaluable" is a status in `health`.
@@ -46,17 +50,20 @@ class Evaluator {
     virtual Fidelity fidelity() const = 0;
 };
 
-/// The design's footprint: the study's, shifted by footprint_offset and kept on the platform; y range cut to the width [m].
+/// The design's footprint: the study's, shifted by footprint_offset and kept on the platform; y range cut to
+/// the width [m].
 Footprint footprint_of(const Study& study, const Design& design);
-/// Weight per bin: mean of the target's zones over the bin; 0 outside the footprint and within 2 D90 of a side (wall or periodic seam).
+/// Weight per bin: mean of the target's zones over the bin; 0 outside the footprint and within 2 D90 of a
+/// side (wall or periodic seam).
 std::vector<double> bin_weights(const Study& study);
 /// Target per bin: mean of g over the bin [-].
 std::vector<double> bin_targets(const Study& study);
 
-/// From run results to numbers, shared by every evaluator: fills target, weight, misfits, objective and residuals.
-/// objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0, min_coverage - coverage) [GI units],
-/// m = raw misfit in the study's norm, d = rms x drift. Raw, not debiased: debiasing is flat at zero and stops a search there; the
-/// floor hardly changes between designs on one map. Without any counting bin the health becomes "no_bins" and the objective 10.
+/// From run results to numbers, shared by every evaluator: fills target, weight, misfits, objective and
+/// residuals. objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0,
+/// min_coverage - coverage) [GI units], m = raw misfit in the study's norm, d = rms x drift. Raw, not
+/// debiased: debiasing is flat at zero and stops a search there; the floor hardly changes between designs on
+/// one map. Without any counting bin the health becomes "no_bins" and the objective 10.
 void judge(const Study& study, Evaluation& evaluation);
 /// Objective of an evaluation that has no numbers: worse than any real one (a misfit is at most 1).
 inline constexpr double kNotEvaluable = 10;

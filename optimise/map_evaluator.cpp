@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <cmath>
+#include <limits>
 
 namespace gradwright {
 namespace {
@@ -124,16 +124,19 @@ void MapEvaluator::describe_turnover(const OriginMap& map, Evaluation& evaluatio
     std::vector<double> volume(kParts, 0), first(kParts, 0), second(kParts, 0);
     for (const Layer& layer : map.layers)
         for (std::size_t i = 0; i < layer.size(); ++i) {
-            const int part = std::clamp(int(layer.deposit_x[i] / layer.platform_length * kParts), 0, kParts - 1);
+            const int part =
+                std::clamp(int(layer.deposit_x[i] / layer.platform_length * kParts), 0, kParts - 1);
             const double origin = layer.origin_x[i] / layer.dispenser_length;
             volume[part] += layer.volume[i];
             first[part] += layer.volume[i] * origin;
             second[part] += layer.volume[i] * origin * origin;
         }
     for (int part = 0; part < kParts; ++part) {
-        const double mean = volume[part] > 0 ? first[part] / volume[part] : std::numeric_limits<double>::quiet_NaN();
+        const double mean =
+            volume[part] > 0 ? first[part] / volume[part] : std::numeric_limits<double>::quiet_NaN();
         evaluation.origin_mean.push_back(mean);
-        evaluation.origin_deviation.push_back(std::sqrt(std::max(0.0, second[part] / volume[part] - mean * mean)));
+        evaluation.origin_deviation.push_back(
+            std::sqrt(std::max(0.0, second[part] / volume[part] - mean * mean)));
         if (!(volume[part] > 0)) evaluation.origin_deviation.back() = mean;
     }
 }

@@ -104,11 +104,13 @@ bool target_rises(const Study& study);
 /// opposite slope). Given as y_p(x), samples at equal steps of W, so that a plateau of g, which every y at
 /// the end of the curve would satisfy, weighs nothing. `quantile` = W^-1 [m] (fully mixed dispenser: share *
 /// L_d). Shares that g never reaches let the curve leave through the side, at -0.5 W or 1.5 W.
-/// Folded forms: at height y A holds the origins between the quantiles (1 - g)/2 and (1 + g)/2 (`valley`: A opens from the
-/// middle of W) or outside g/2 and 1 - g/2 (`ridge`: from both ends). Both lay the same profile; what each x takes too much
-/// of from one end it takes too little of from the other, so a shift of the origins along x cancels to first order.
+/// Folded forms: at height y A holds the origins between the quantiles (1 - g)/2 and (1 + g)/2 (`valley`: A
+/// opens from the middle of W) or outside g/2 and 1 - g/2 (`ridge`: from both ends). Both lay the same
+/// profile; what each x takes too much of from one end it takes too little of from the other, so a shift of
+/// the origins along x cancels to first order.
 enum class Fold { none, valley, ridge };
 std::vector<PlanPoint> closed_form_curve(const Study& study, Orientation orientation,
-                                         const std::function<double(double share)>& quantile, Fold fold = Fold::none);
+                                         const std::function<double(double share)>& quantile,
+                                         Fold fold = Fold::none);
 
 }  // namespace gradwright

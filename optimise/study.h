@@ -34,12 +34,14 @@ enum class Family { straight, polyline };
 
 struct DesignSpace {
     Family family = Family::polyline;
-    int knots = 5;          ///< polyline: >= 2
-    bool monotone = true;   ///< polyline: y never turns back along x
-    double minimum_segment = 0.1e-3;  ///< [m]
+    int knots = 5;                                            ///< polyline: >= 2
+    bool monotone = true;                                     ///< polyline: y never turns back along x
+    double minimum_segment = 0.1e-3;                          ///< [m]
     Variable angle_deg{"partition.angle", 5, true, -90, 90};  ///< straight [deg]
-    Variable offset{"partition.offset", 0, true, 0, 0};       ///< straight, y offset of the pivot [m]; bounds (0,0) = from the width
-    std::vector<PlanPoint> given_points;  ///< polyline fixed or started by the user; empty = closed-form start
+    Variable offset{"partition.offset", 0, true, 0,
+                    0};  ///< straight, y offset of the pivot [m]; bounds (0,0) = from the width
+    std::vector<PlanPoint>
+        given_points;  ///< polyline fixed or started by the user; empty = closed-form start
     bool partition_free = true;
     std::array<Variable, 2> fill_fraction = {Variable{"fill_fraction.A", 1}, Variable{"fill_fraction.B", 1}};
     // motion variables: each new value needs a new spread
@@ -58,17 +60,18 @@ struct Objective {
 };
 
 struct Study {
-    std::string name;          ///< file stem, or [study] name
-    std::string file;          ///< path as given
-    std::string text;          ///< verbatim TOML
+    std::string name;  ///< file stem, or [study] name
+    std::string file;  ///< path as given
+    std::string text;  ///< verbatim TOML
     std::string machine_name;
-    // machine and process, kept apart from the Scene because dosage, land and strip width change per evaluation
-    Scene scene;               ///< full-width scene at the fixed / start values of the motion variables
-    double dispenser_width = 1.6e-3;  ///< W [m]
-    double steady_packing = 0.28;     ///< used when gap = steady
-    bool gap_steady = true;           ///< gap = layer_thickness / steady_packing
-    bool allow_starved = false;       ///< supply ratio < 1.05 allowed
-    double strip_width = 0.4e-3;      ///< periodic strip of the map [m]
+    // machine and process, kept apart from the Scene because dosage, land and strip width change per
+    // evaluation
+    Scene scene;  ///< full-width scene at the fixed / start values of the motion variables
+    double dispenser_width = 1.6e-3;      ///< W [m]
+    double steady_packing = 0.28;         ///< used when gap = steady
+    bool gap_steady = true;               ///< gap = layer_thickness / steady_packing
+    bool allow_starved = false;           ///< supply ratio < 1.05 allowed
+    double strip_width = 0.4e-3;          ///< periodic strip of the map [m]
     std::vector<std::string> reductions;  ///< named: "fines_cut", "shallow_bed", "strip_map"
     Target target;
     Footprint footprint;  ///< default: the whole platform
@@ -76,8 +79,8 @@ struct Study {
     DesignSpace design_space;
     Objective objective;
     std::uint64_t seed = 1;
-    int map_spreads = 1;       ///< strips pooled in the map
-    int max_spreads = 4;       ///< budget: map + full
+    int map_spreads = 1;                ///< strips pooled in the map
+    int max_spreads = 4;                ///< budget: map + full
     std::vector<InputEntry> inputs;     ///< every value, given or default
     std::vector<std::string> warnings;  ///< found while reading
 };
@@ -88,13 +91,13 @@ struct Design {
     PartitionCurve partition;
     std::array<double, 2> fill_fraction = {1, 1};
     double dosage_factor = 2;
-    double land = 0;              ///< [m]
-    double footprint_offset = 0;  ///< [m]
+    double land = 0;                                         ///< [m]
+    double footprint_offset = 0;                             ///< [m]
     std::vector<std::pair<std::string, double>> parameters;  ///< named numbers of the family (deg, m)
 };
 
-/// The scene of a design: dose height = dosage_factor x layer x (A_platform/A_dispenser), land, headspaces; `strip`: the map's narrow
-/// periodic strip. Seed is the packing seed.
+/// The scene of a design: dose height = dosage_factor x layer x (A_platform/A_dispenser), land, headspaces;
+/// `strip`: the map's narrow periodic strip. Seed is the packing seed.
 Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64_t seed);
 /// h phi_bed A_dispenser / (g phi_layer A_platform) [-]
 double supply_ratio(const Scene& scene, double bed_packing, double layer_packing);

@@ -1,4 +1,5 @@
-// Study file (TOML) -> Study. All problems of a file at once, each with file, line, key, value, rule and how to mend.
+// Study file (TOML) -> Study. All problems of a file at once, each with file, line, key, value, rule and how
+// to mend.
 #pragma once
 #include <string>
 #include <vector>
@@ -23,14 +24,15 @@ std::string report_of(const InputError& error);
 
 /// `overrides`: "key.path=toml value", applied before validation (from --set).
 Study read_study(const std::string& file, const std::vector<std::string>& overrides = {});
-Study parse_study(const std::string& text, const std::string& file_name, const std::vector<std::string>& overrides = {});
+Study parse_study(const std::string& text, const std::string& file_name,
+                  const std::vector<std::string>& overrides = {});
 
-/// "40 um", "0.02 J/m2", "5 deg", "100 mm/s" -> SI number. `dimension`: "length", "speed", "angle", "work_of_adhesion", "pressure",
-/// "density", "acceleration". Throws std::invalid_argument with the rule.
+/// "40 um", "0.02 J/m2", "5 deg", "100 mm/s" -> SI number. `dimension`: "length", "speed", "angle",
+/// "work_of_adhesion", "pressure", "density", "acceleration". Throws std::invalid_argument with the rule.
 double parse_quantity(const std::string& text, const std::string& dimension);
 
-/// An SI number for people: "40 um", "3.2 mm", "100 mm/s", "195 GPa"; 6 significant digits, the unit that reads best.
-/// `dimension` as in parse_quantity; "" = a plain number.
+/// An SI number for people: "40 um", "3.2 mm", "100 mm/s", "195 GPa"; 6 significant digits, the unit that
+/// reads best. `dimension` as in parse_quantity; "" = a plain number.
 std::string format_quantity(double si, const std::string& dimension);
 
 /// Nearest of `valid` to `word` by edit distance; empty when nothing is near.
@@ -42,7 +44,8 @@ struct MachineInfo {
 };
 std::vector<MachineInfo> shipped_machines();  ///< from examples/machines/*.toml
 std::vector<Material> shipped_materials();    ///< from examples/materials.toml; each with its source
-/// Folder of the shipped data: GRADWRIGHT_DATA, else the source tree's examples, else the installed share folder.
+/// Folder of the shipped data: GRADWRIGHT_DATA, else the source tree's examples, else the installed share
+/// folder.
 std::string data_folder();
 
 }  // namespace gradwright

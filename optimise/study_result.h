@@ -23,16 +23,18 @@ struct StudyResult {
     std::string termination = "not_run";  ///< converged | budget | failed | interrupted
     std::string message;
     Verdict verdict = Verdict::undecided;
-    Misfit misfit, drift_misfit;      ///< of the mean confirmed profile
+    Misfit misfit, drift_misfit;  ///< of the mean confirmed profile
     Design design;
-    Evaluation predicted;             ///< on the map, hard labels
+    Evaluation predicted;                   ///< on the map, hard labels
     std::vector<Evaluation> confirmations;  ///< labelled full-width spreads on unseen packing seeds
     GradationProfile confirmed;             ///< mean of the confirmations, with band
     XDrift confirmed_drift;
-    std::vector<double> target, weight, band_low, band_high;  ///< per bin; simultaneous 95 % band of the confirmed profile
+    std::vector<double> target, weight, band_low,
+        band_high;                       ///< per bin; simultaneous 95 % band of the confirmed profile
     std::optional<Evaluation> straight;  ///< the best straight partition on the same map: stated comparison
     std::optional<Evaluation> kinematic;
-    double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0, waste_a_share = 0;
+    double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0,
+           waste_a_share = 0;
     int spreads_map = 0, spreads_full = 0;
     std::vector<HistoryEntry> history;
     std::map<std::string, double> stage_seconds;

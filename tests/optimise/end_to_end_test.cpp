@@ -10,7 +10,8 @@
 namespace gradwright {
 namespace {
 
-/// A quarter-size coupon: 0.9 x 0.8 mm dispenser, fast blade, coarse time step. Physics of the shipped examples.
+/// A quarter-size coupon: 0.9 x 0.8 mm dispenser, fast blade, coarse time step. Physics of the shipped
+/// examples.
 std::string tiny_study() {
     return R"(
 [study]
@@ -64,7 +65,8 @@ StudyResult design(const Study& study, int threads, const std::string& journal =
 
 TEST(EndToEnd, a_tiny_study_is_designed_and_confirmed_with_the_same_bits_on_one_and_two_threads) {
     const Study study = parse_study(tiny_study(), "tiny.toml");
-    const std::filesystem::path journal = std::filesystem::temp_directory_path() / "gradwright end to end journal";
+    const std::filesystem::path journal =
+        std::filesystem::temp_directory_path() / "gradwright end to end journal";
     std::filesystem::remove_all(journal);
     const StudyResult one = design(study, 1, journal.string());
     ASSERT_EQ(one.termination == "failed", false) << one.message;
@@ -92,7 +94,8 @@ TEST(EndToEnd, a_tiny_study_is_designed_and_confirmed_with_the_same_bits_on_one_
 
     // Each finished evaluation is one file.
     int files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(journal)) files += entry.path().extension() == ".json";
+    for (const auto& entry : std::filesystem::directory_iterator(journal))
+        files += entry.path().extension() == ".json";
     EXPECT_GE(files, 3);
     std::filesystem::remove_all(journal);
 
