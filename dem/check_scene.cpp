@@ -58,9 +58,11 @@ std::vector<SceneProblem> validate(const Scene& s) {
     if (s.gap < 1.5 * d90 && s.gap >= d_max)
         warn(fmt::format("gap {:.0f} um is below 1.5 D90 ({:.0f} um): the layer will be thin and patchy",
                          s.gap * um, 1.5 * d90 * um));
-    if (s.rayleigh_fraction > 0.4)
-        warn(fmt::format("time step {:.2f} of Rayleigh's is close to the stability edge; 0.2 is the default",
-                         s.rayleigh_fraction));
+    if (s.rayleigh_fraction > 0.25)
+        warn(
+            fmt::format("time step {:.2f} of Rayleigh's: grains wedged between blade and rim become unstable "
+                        "near 0.3; 0.2 is the default",
+                        s.rayleigh_fraction));
     if (s.blade_tip_radius > 0.5 * s.blade_thickness)
         fatal("blade tip radius is more than half the blade's thickness: lower machine.blade.tip_radius");
     if (s.bed_depth < 8 * d50 && s.bed_depth < s.dispenser_depth)

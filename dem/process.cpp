@@ -324,11 +324,11 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
                                        1e3 * (blade_x() - longest->second)));
             break;
         }
-        // Ten per cent of the radius in more than one grain of a thousand: the softening is wrong for this
-        // scene. One grain wedged between blade and rim for a moment is a warning instead (its overlap is
-        // reported).
+        // Ten per cent of the radius in more than one grain of a thousand (and at least five): the softening
+        // is wrong for this scene. One grain wedged between blade and rim for a moment is a warning instead
+        // (its overlap is reported).
         const double crushed = engine.share_overlapping(0.10);
-        if (crushed > 1e-3) {
+        if (crushed > std::max(1e-3, 4.5 / static_cast<double>(out.grains))) {
             fail("overlap", fmt::format("{:.2f} % of the grains overlap by more than 10 % of the radius; "
                                         "raise numerics.softening (now "
                                         "{:.2g}) or lower the speeds",
