@@ -55,7 +55,9 @@ Design read_design(const std::string& file, const Study& study) {
                 bad("partition.points_m", partition["points_m"].dump(), "must not cross itself");
         }
         design.parameters.clear();
-        for (const auto& [name, value] : partition.value("parameters", nlohmann::json::object()).items())
+        // named first: a range-for does not keep the temporary behind items() alive
+        const nlohmann::json parameters = partition.value("parameters", nlohmann::json::object());
+        for (const auto& [name, value] : parameters.items())
             if (value.is_number()) design.parameters.emplace_back(name, value.get<double>());
         const nlohmann::json fill = object.value("fill_fraction", nlohmann::json::object());
         design.fill_fraction = {fill.value("A", design.fill_fraction[0]),
