@@ -18,7 +18,7 @@
 //   xi is turned into the current contact plane at constant length. The stored history is xi + v_t dt/2: the
 //   trapezoidal rule for d xi/dt = v_t with velocities predicted at whole steps. (Rejected: xi += v_t dt with
 //   the predicted velocity, first order, adds a damping of omega dt/4 per radian; with the half-step
-//   velocity, a second record per grain to gather, a fifth of the law's time.)
+//   velocity, a second record per grain to gather.)
 // Rolling: constant_torque M = -mu_r R* F_cap w/|w| (w = relative spin without its normal part), linear below
 // a stated speed;
 //   spring: elastic-plastic spring-dashpot, Ai et al. 2011 type C: k_r = 2.25 S_n (mu_r R*)^2, cap mu_r R*

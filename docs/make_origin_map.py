@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/origin-map.md from runs of the program. Usage, from the project's root (about half an hour on 2 cores):
+"""Writes the tables of docs/origin-map.md from runs of the program. Usage, from the project's root:
 
     python3 docs/make_origin_map.py [turnover] [evidence]
 
