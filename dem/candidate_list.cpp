@@ -162,6 +162,9 @@ void Engine::rebuild_candidates() {
                       candidate_owner_.begin() + candidate_first_[i + 1], static_cast<std::int32_t>(i));
     }
 
+    find_reachable_bodies();
+    frame_shift_ = body_way_ = 0;
+
     // Reverse list: for every grain the candidate numbers in which it is the second, ascending.
     reverse_first_.assign(n + 1, 0);
     for (const std::int32_t j : candidate_) ++reverse_first_[j + 1];
@@ -170,6 +173,21 @@ void Engine::rebuild_candidates() {
     std::vector<std::int32_t> at(reverse_first_.begin(), reverse_first_.end() - 1);
     for (std::size_t c = 0; c < candidate_.size(); ++c)
         reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(c);
+}
+
+void Engine::find_reachable_bodies() {
+    const auto& s = state_;
+    reachable_.assign(s.size(), 0);
+#pragma omp parallel for schedule(static, 256) num_threads(threads_)
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (s.fixed[i]) continue;
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (body_removed_[b]) continue;
+            const auto p = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_,
+                                         bodies_[b].speed_z * body_time_, s.x[i], s.y[i], s.z[i]);
+            if (p.distance < s.radius[i] + skin_) reachable_[i] |= 1u << b;
+        }
+    }
 }
 
 // A grain sleeps when it and every near neighbour have been slower than sleep_speed for sleep_time; it wakes
@@ -184,9 +202,10 @@ void Engine::update_sleep() {
         std::vector<float> speed(n, 0.0f);
         for (std::size_t i = 0; i < n; ++i) {
             if (s.fixed[i] || s.asleep[i]) continue;
-            const double v2 = s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
-            const double w2 = s.wx[i] * s.wx[i] + s.wy[i] * s.wy[i] + s.wz[i] * s.wz[i];
-            speed[i] = static_cast<float>(std::sqrt(std::max(v2, w2 * s.radius[i] * s.radius[i])));
+            // Not the spin: a grain that rolls also moves, and one that only twists about a contact normal
+            // would do so for ever, because the law has no twisting resistance.
+            speed[i] =
+                static_cast<float>(std::sqrt(s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i]));
             s.quiet[i] = speed[i] < options_.sleep_speed
                              ? s.quiet[i] + static_cast<std::int32_t>(steps_since_near_)
                              : 0;

@@ -19,11 +19,11 @@ Engine::Kernel::Predicted Engine::KernelOf<T>::predicted(std::size_t i) const {
 }
 
 template <class T>
-void Engine::KernelOf<T>::scale_motion(double factor) {
-    const S f = static_cast<S>(factor);
+void Engine::KernelOf<T>::scale_motion(double velocity, double spin) {
+    const S v = static_cast<S>(velocity), w = static_cast<S>(spin);
     for (Motion& m : motion) {
-        m.vx *= f, m.vy *= f, m.vz *= f;
-        m.wx *= f, m.wy *= f, m.wz *= f;
+        m.vx *= v, m.vy *= v, m.vz *= v;
+        m.wx *= w, m.wy *= w, m.wz *= w;
     }
 }
 
@@ -247,9 +247,8 @@ void Engine::KernelOf<T>::rebuild_walls() {
     wall_first.assign(n + 1, 0);
 #pragma omp parallel for schedule(static, 256) num_threads(e.threads_)
     for (std::size_t i = 0; i < n; ++i) {
-        if (s.fixed[i]) continue;
-        for (int b = 0; b < body_count; ++b) {
-            if (e.body_removed_[b]) continue;
+        for (int b = 0; e.reachable_[i] >> b; ++b) {
+            if (!(e.reachable_[i] >> b & 1) || e.body_removed_[b]) continue;
             const auto p = nearest_point(e.bodies_[b], e.bodies_[b].speed_x * e.body_time_,
                                          e.bodies_[b].speed_z * e.body_time_, s.x[i], s.y[i], s.z[i]);
             if (p.distance < s.radius[i] + e.near_skin_) near[i] |= 1u << b;

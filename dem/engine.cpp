@@ -137,7 +137,14 @@ void Engine::scale_velocities(double factor) {
     auto& s = state_;
     for (std::size_t i = 0; i < s.size(); ++i)
         for (auto* v : {&s.vx, &s.vy, &s.vz, &s.wx, &s.wy, &s.wz}) (*v)[i] *= factor;
-    kernel_->scale_motion(factor);
+    kernel_->scale_motion(factor, factor);
+}
+
+void Engine::scale_spins(double factor) {
+    auto& s = state_;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        for (auto* w : {&s.wx, &s.wy, &s.wz}) (*w)[i] *= factor;
+    kernel_->scale_motion(1, factor);
 }
 
 double Engine::max_speed() const {
@@ -246,6 +253,24 @@ void Engine::check_health() {
         failed_ = "speed";
 }
 
+double Engine::frame_speed() const {
+    double low = 0, high = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (bodies_move_ && !body_removed_[b]) {
+            low = std::min(low, bodies_[b].speed_x);
+            high = std::max(high, bodies_[b].speed_x);
+        }
+    return 0.5 * (low + high);
+}
+
+double Engine::body_speed(double frame) const {
+    double top = std::fabs(frame);
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (bodies_move_ && !body_removed_[b])
+            top = std::max(top, std::hypot(bodies_[b].speed_x - frame, bodies_[b].speed_z));
+    return top;
+}
+
 long Engine::advance(long steps) {
     long done = 0;
     // Who sleeps is decided when the near list is made: in a bed almost at rest that must not wait for the
@@ -258,10 +283,10 @@ long Engine::advance(long steps) {
             const double start = omp_get_wtime();
             bool rebuild = !lists_valid_;
             if (!rebuild) {
-                double moved = 0;
+                double moved = body_way_ * body_way_;
                 for (const std::int32_t i : awake_) {
-                    const double dx = state_.x[i] - built_x_[i], dy = state_.y[i] - built_y_[i],
-                                 dz = state_.z[i] - built_z_[i];
+                    const double dx = state_.x[i] - built_x_[i] - frame_shift_,
+                                 dy = state_.y[i] - built_y_[i], dz = state_.z[i] - built_z_[i];
                     moved = std::max(moved, dx * dx + dy * dy + dz * dz);
                 }
                 // two grains may have approached by twice the largest move; what is left must cover the near
@@ -283,7 +308,7 @@ long Engine::advance(long steps) {
             lists_valid_ = true;
             travel_ = 0;
             steps_since_near_ = 0;
-            max_overlap_seen_ = std::max(max_overlap_seen_, kernel_->max_overlap_ratio());
+            if (rebuild) max_overlap_seen_ = std::max(max_overlap_seen_, kernel_->max_overlap_ratio());
             times_.near_list += omp_get_wtime() - middle;
         }
         const long now = kernel_->run(std::min(steps - done, sleep_look - steps_since_near_));

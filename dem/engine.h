@@ -86,6 +86,8 @@ class Engine {
     void wake_all();
     /// Multiply every velocity and spin (a quench while packing).
     void scale_velocities(double factor);
+    /// Multiply every spin: ends twirls about single contacts, which no part of the law resists.
+    void scale_spins(double factor);
 
     /// Up to `steps` steps; fewer when something went wrong (see `failed`). Returns the number done.
     long advance(long steps);
@@ -139,7 +141,13 @@ class Engine {
     struct KernelOf;
 
     void rebuild_candidates();
+    void find_reachable_bodies();
     void update_sleep();
+    /// Half way between the fastest bodies along x [m/s]. Two things close in by no more than the sum of
+    /// their ways against any common frame; in this one what the blade pushes and what stands still count
+    /// half.
+    double frame_speed() const;
+    double body_speed(double frame) const;  ///< largest speed of a body or fixed grain against the frame
     void check_health();
 
     EngineOptions options_;
@@ -155,7 +163,9 @@ class Engine {
     bool bodies_move_ = false;
     long steps_ = 0;
     double grain_steps_ = 0;
-    double travel_ = 0;  ///< closing distance possible since the near list was made [m]
+    double frame_shift_ = 0,
+           body_way_ = 0;  ///< since the candidates were found: of the frame, of bodies in it
+    double travel_ = 0;    ///< closing distance possible since the near list was made [m]
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;
     bool constants_valid_ = true;  ///< false: pair constants are computed anew at the next refresh
@@ -167,6 +177,7 @@ class Engine {
     std::vector<double> built_x_, built_y_, built_z_;
     std::vector<std::int32_t> candidate_first_, candidate_, candidate_owner_, candidate_slot_;
     std::vector<std::int32_t> reverse_first_, reverse_;  ///< candidate numbers in which a grain is the second
+    std::vector<std::uint32_t> reachable_;               ///< bodies within the skin of a grain, one bit each
     std::vector<std::int32_t> new_index_;  ///< of the last permutation: old index -> new index, -1 removed
     std::vector<std::int32_t> awake_;
     std::int32_t next_id_ = 0;

@@ -12,7 +12,7 @@
 namespace gradwright {
 
 template <class T>
-double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, double kick) {
+double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, double kick, double frame) {
     State& s = e.state_;
     const double dt = e.options_.time_step;
     const auto g = e.options_.gravity;
@@ -42,7 +42,8 @@ double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, doub
         s.x[i] += dt * s.vx[i];
         s.y[i] += dt * s.vy[i];
         s.z[i] += dt * s.vz[i];
-        const double speed2 = s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
+        const double forward = s.vx[i] - frame;
+        const double speed2 = forward * forward + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
         top = std::max(top, speed2);
         sum += speed2;
         const double half = 0.5 * dt;
@@ -68,11 +69,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const std::size_t awake = e.awake_.size();
     // fewer grains than this per thread cost more in waiting than they win
     const int threads = static_cast<int>(std::clamp<std::size_t>(awake / 200, 1, e.threads_));
-    double body_top = 0;
-    for (std::size_t b = 0; b < e.bodies_.size(); ++b)
-        if (!e.body_removed_[b])
-            body_top = std::max({body_top, std::fabs(e.bodies_[b].speed_x), std::fabs(e.bodies_[b].speed_z)});
-    if (!e.bodies_move_) body_top = 0;
+    const double frame = e.frame_speed(), body_top = e.body_speed(frame);
 
     std::vector<double> tops(threads * 8, 0.0);
     long done = 0;
@@ -98,7 +95,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 clock = now;
             }
             const double kick = first_kick && step == 0 ? 0.5 * dt : dt;
-            tops[me * 8] = grain_pass(share(awake, me), share(awake, me + 1), kick);
+            tops[me * 8] = grain_pass(share(awake, me), share(awake, me + 1), kick, frame);
 #pragma omp barrier
             if (me == 0) {
                 const double now = omp_get_wtime();
@@ -124,6 +121,8 @@ long Engine::KernelOf<T>::run_with(long steps) {
     e.travel_ = std::isfinite(travel) ? travel : 1e9;
     e.steps_ += done;
     e.steps_since_near_ += done;
+    e.frame_shift_ += frame * dt * done;
+    e.body_way_ += body_top * dt * done;
     e.time_ += dt * done;
     if (e.bodies_move_) e.body_time_ += dt * done;
     e.grain_steps_ += static_cast<double>(done) * static_cast<double>(awake);
@@ -151,7 +150,7 @@ long Engine::KernelOf<T>::run(long steps) {
 
 template long Engine::KernelOf<double>::run(long);
 template long Engine::KernelOf<F8>::run(long);
-template double Engine::KernelOf<double>::grain_pass(std::size_t, std::size_t, double);
-template double Engine::KernelOf<F8>::grain_pass(std::size_t, std::size_t, double);
+template double Engine::KernelOf<double>::grain_pass(std::size_t, std::size_t, double, double);
+template double Engine::KernelOf<F8>::grain_pass(std::size_t, std::size_t, double, double);
 
 }  // namespace gradwright

@@ -55,7 +55,7 @@ class MapStrategy {
         OriginMap& map = run_.map.map_of(motion_);
         run_.result.map_layers = map.layers;
         run_.result.beds = map.beds;
-        for (const std::string& warning : map.health.warnings) run_.result.warnings.push_back(warning);
+        run_.warn(map.health.warnings);
         if (!map.health.ok()) {
             run_.record("map", run_.map.evaluate(motion_, 0), "no origin map");
             return run_.fail(

@@ -83,13 +83,22 @@ void StrategyRun::record(const std::string& stage, const Evaluation& evaluation,
     result.history.push_back(std::move(entry));
 }
 
+void StrategyRun::warn(const std::vector<std::string>& warnings) {
+    const auto kind = [](std::string text) {
+        std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+        return text;
+    };
+    for (const std::string& warning : warnings)
+        if (std::none_of(result.warnings.begin(), result.warnings.end(),
+                         [&](const std::string& known) { return kind(known) == kind(warning); }))
+            result.warnings.push_back(warning);
+}
+
 bool StrategyRun::confirm(ConfirmedDesign& round) {
     const std::uint64_t seed = confirmation_seed(study.seed, confirmations_++);
     const Evaluation evaluation = full.evaluate(round.design, seed);
     record("confirm", evaluation, fmt::format("packing seed {}", seed));
-    for (const std::string& warning : evaluation.health.warnings)
-        if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end())
-            result.warnings.push_back(warning);
+    warn(evaluation.health.warnings);
     if (!evaluation.health.ok()) {
         last_failure_ = fmt::format("{}: {}", evaluation.health.status, evaluation.health.reason);
         return false;

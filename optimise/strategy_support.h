@@ -20,6 +20,9 @@ class StrategyRun {
     /// Time from here on is booked on `stage`, and people are told.
     void enter(const std::string& stage);
     void record(const std::string& stage, const Evaluation& evaluation, const std::string& note);
+    /// Kept once per kind: two beds say the same thing with different numbers (each evaluation keeps its
+    /// own).
+    void warn(const std::vector<std::string>& warnings);
     int spreads_left() const { return study.max_spreads - runner.map_spreads - runner.full_spreads; }
     /// One more confirmation of `round` on a seed that nothing has seen; false when it gave no numbers
     /// (recorded with its reason).

@@ -10,8 +10,7 @@
 namespace gradwright {
 namespace {
 
-/// A quarter-size coupon: 0.9 x 0.8 mm dispenser, fast blade, coarse time step. Physics of the shipped
-/// examples.
+/// A quarter-size coupon: 0.9 x 0.8 mm dispenser. Physics of the shipped examples.
 std::string tiny_study() {
     return R"(
 [study]
@@ -19,12 +18,12 @@ name = "tiny"
 [machine]
 dispenser = { length = "0.9 mm", width = "0.8 mm", depth = "1 mm" }
 platform  = { length = "0.9 mm" }
-land = "0.6 mm"
+land = "0.8 mm"
 second_land = "0.8 mm"
 blade = { thickness = "0.2 mm" }
 [process]
 layer_thickness = "40 um"
-blade_speed = "200 mm/s"
+blade_speed = "100 mm/s"
 substrate = "fused"
 gap = "steady"
 steady_packing = 0.28
@@ -77,9 +76,9 @@ TEST(EndToEnd, a_tiny_study_is_designed_and_confirmed) {
     // The confirmation packed its own bed and carried both powders.
     EXPECT_NE(one.confirmations[0].seed, one.map_layers.at(0).packing_seed);
     EXPECT_FALSE(one.map_layers[0].labelled);
-    EXPECT_GT(one.capture_fraction, 0.01);  // a short, fast bed lays little
+    EXPECT_GT(one.capture_fraction, 0.1);
     EXPECT_LT(one.capture_fraction, 1.0);
-    EXPECT_GT(one.packing_fraction, 0.005);
+    EXPECT_GT(one.packing_fraction, 0.1);
     EXPECT_LT(one.packing_fraction, 0.6);
 
     // A ramp was asked for and a ramp was laid: rising from mostly B to mostly A over the counting bins.
@@ -88,9 +87,9 @@ TEST(EndToEnd, a_tiny_study_is_designed_and_confirmed) {
     for (std::size_t b = 0; b < gi.size(); ++b)
         if (one.weight[b] > 0) counting.push_back(gi[b]);
     ASSERT_GE(counting.size(), 3u);
-    EXPECT_GT(counting.back() - counting.front(), 0.1);
+    EXPECT_GT(counting.back() - counting.front(), 0.3);
     for (const double value : counting) EXPECT_TRUE(std::isfinite(value));
-    EXPECT_LT(one.misfit.value, 0.5);
+    EXPECT_LT(one.misfit.value, 0.25);
 
     // Each finished evaluation is one file.
     int files = 0;
@@ -98,6 +97,19 @@ TEST(EndToEnd, a_tiny_study_is_designed_and_confirmed) {
         files += entry.path().extension() == ".json";
     EXPECT_GE(files, 3);
     std::filesystem::remove_all(journal);
+
+    // Nothing in the answer depends on the number of threads.
+    const StudyResult other = design(study, 1);
+    ASSERT_EQ(other.confirmations.size(), one.confirmations.size());
+    EXPECT_EQ(other.confirmations[0].state_hash, one.confirmations[0].state_hash);
+    EXPECT_EQ(other.confirmed.gi, one.confirmed.gi);
+    EXPECT_EQ(other.misfit.value, one.misfit.value);
+    EXPECT_EQ(other.misfit.interval_high, one.misfit.interval_high);
+    ASSERT_EQ(other.design.partition.points.size(), one.design.partition.points.size());
+    for (std::size_t i = 0; i < other.design.partition.points.size(); ++i) {
+        EXPECT_EQ(other.design.partition.points[i].x, one.design.partition.points[i].x);
+        EXPECT_EQ(other.design.partition.points[i].y, one.design.partition.points[i].y);
+    }
 }
 
 }  // namespace
