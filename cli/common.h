@@ -72,7 +72,11 @@ void add_out_options(CLI::App& verb, CommonOptions& options);     ///< --out --f
 void add_design(CLI::App& app, Call& call);
 void add_evaluate(CLI::App& app, Call& call);
 void add_check(CLI::App& app, Call& call);
+void add_crosscheck(CLI::App& app, Call& call);
 void add_bench(CLI::App& app, Call& call);
+void add_verify(CLI::App& app, Call& call);
+void add_bulk(CLI::App& app, Call& call);
+void add_limits(CLI::App& app, Call& call);
 void add_report(CLI::App& app, Call& call);
 void add_materials(CLI::App& app, Call& call);
 void add_machines(CLI::App& app, Call& call);

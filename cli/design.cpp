@@ -37,6 +37,10 @@ void refuse_contradictions(const DesignOptions& options) {
                       fmt::format("--strategy: there is no strategy '{}'{}", options.strategy,
                                   hint(options.strategy, strategies)),
                       fmt::format("one of {}", fmt::join(strategies, ", ")));
+    if (options.fidelity == "lammps")
+        throw Failure(ExitCode::usage,
+                      "--fidelity lammps is a witness, not a search: one spread takes minutes to hours",
+                      "take it with 'evaluate' or 'crosscheck lammps'");
     if (options.strategy == "map" && !options.fidelity.empty())
         throw Failure(
             ExitCode::usage,

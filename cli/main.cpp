@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/common.h"
+#include "optimise/lammps_run.h"
 #include "reports/provenance.h"
 
 namespace gradwright::cli {
@@ -100,7 +101,11 @@ int run(int argc, char** argv) {
     add_evaluate(app, call);
     add_check(app, call);
     add_report(app, call);
+    add_crosscheck(app, call);
     add_bench(app, call);
+    add_verify(app, call);
+    add_bulk(app, call);
+    add_limits(app, call);
     add_materials(app, call);
     add_machines(app, call);
     CLI::App* version_verb = app.add_subcommand("version", "Version, source, compiler, instruction set");
@@ -174,6 +179,8 @@ int run(int argc, char** argv) {
                               error.problems);
     } catch (const Failure& failure) {
         return report_failure(json, failure.code, failure.message, failure.mend);
+    } catch (const LammpsError& error) {
+        return report_failure(json, ExitCode::external, error.message, error.mend);
     } catch (const std::filesystem::filesystem_error& error) {
         return report_failure(json, ExitCode::io, error.what(),
                               "check the path, its rights and the free space");

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "cli/common.h"
+#include "optimise/material_table.h"
+#include "reports/composition_json.h"
 
 namespace gradwright::cli {
 namespace {
@@ -17,7 +19,9 @@ ExitCode run_materials(const CommonOptions& common) {
                             {"density_kg_m3", material.density},
                             {"youngs_modulus_pa", material.youngs_modulus},
                             {"poissons_ratio", material.poissons_ratio},
-                            {"source", material.source}});
+                            {"source", material.source},
+                            {"composition_wt", composition_json(material)},
+                            {"composition_source", material.composition_source}});
         fmt::print("{}\n", json_text(nlohmann::json{{"materials", rows}}));
         return ExitCode::met;
     }
@@ -32,6 +36,9 @@ ExitCode run_materials(const CommonOptions& common) {
             fmt::print("    {}\n", material.source.substr(from, to - from));
             from = to + 2;
         }
+        if (!material.composition.empty())
+            fmt::print("    composition, wt%: {}\n    composition: {}\n", composition_text(material),
+                       material.composition_source);
     }
     return ExitCode::met;
 }

@@ -22,7 +22,7 @@ RunOptions run_options(const CommonOptions& common, ProgressLine& progress) {
 
 Fidelity fidelity_of(const std::string& name) {
     std::vector<std::string> valid;
-    for (const Fidelity fidelity : {Fidelity::kinematic, Fidelity::map, Fidelity::full}) {
+    for (const Fidelity fidelity : {Fidelity::kinematic, Fidelity::map, Fidelity::full, Fidelity::lammps}) {
         if (name == gradwright::to_string(fidelity)) return fidelity;
         valid.push_back(gradwright::to_string(fidelity));
     }

@@ -12,7 +12,7 @@ namespace gradwright::cli {
 /// Threads, cache, progress and the stop flag of the signals. `progress` must outlive the run.
 RunOptions run_options(const CommonOptions& common, ProgressLine& progress);
 
-/// "kinematic" | "map" | "full"; anything else is Failure usage with the nearest name.
+/// "kinematic" | "map" | "full" | "lammps"; anything else is Failure usage with the nearest name.
 Fidelity fidelity_of(const std::string& name);
 
 /// Calls `write`; a file that cannot be written becomes Failure io that names the folder.

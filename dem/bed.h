@@ -40,6 +40,7 @@ void add_end_walls(Engine& engine, const Scene& scene);
 void add_bed(Engine& engine, const Bed& bed, bool labelled);
 
 /// Side walls y = 0, W of a scene as bodies (none when periodic).
+std::vector<Body> side_walls(const Scene& scene);
 void add_side_walls(Engine& engine, const Scene& scene);
 
 /// Solid volume of spheres between two heights [m3], exact.

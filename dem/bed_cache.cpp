@@ -16,6 +16,8 @@ std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
     s.headspace = {0, 0};
     s.substrate = Substrate::fused;
     s.sleep = false;
+    s.allow_starved = false;
+    s.adhesive_walls = true;  // of the machine while it spreads; the dispenser's walls are not concerned
     s.dispenser_depth = 0;
     std::string text = fmt::format("format {}\n{}", kEngineFormat, s.canonical_text());
     if (partition)

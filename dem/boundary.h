@@ -23,6 +23,7 @@ struct Body {
     double speed_x = 0, speed_z = 0;  ///< [m/s]
     int material = 0;
     bool frictionless = false;
+    bool adhesive = true;  ///< false: a plain Hertz wall, whatever the work of adhesion
     /// > 0: the body yields. The overlap that the law sees is at most this share of the radius, so a pinched
     /// grain is pressed with a limited force (a blade lip gives way or lifts) instead of with whatever the
     /// softened stiffness would reach.

@@ -66,9 +66,11 @@ void Engine::rebuild_candidates() {
     auto cells_of = [&](double span) {
         return static_cast<int>(std::clamp(std::floor(span / cell), 1.0, 4000.0));
     };
-    const int nx = cells_of(std::max(hi_x - lo_x, 0.0) + cell),
+    // a period along x or z is for small gases only: one cell, so that no row has to wrap round
+    const double period_x = options_.period_x, period_z = options_.period_z;
+    const int nx = period_x > 0 ? 1 : cells_of(std::max(hi_x - lo_x, 0.0) + cell),
               ny = periodic ? cells_of(span_y) : cells_of(span_y + cell);
-    const int nz = std::min(cells_of(std::max(hi_z - lo_z, 0.0) + cell), 512);
+    const int nz = period_z > 0 ? 1 : std::min(cells_of(std::max(hi_z - lo_z, 0.0) + cell), 512);
     const double inv_y = ny / (periodic ? span_y : span_y + cell);
 
     auto cell_of = [&](std::size_t i) {
@@ -140,7 +142,9 @@ void Engine::rebuild_candidates() {
                          j < to; ++j) {
                         double dy = s.y[i] - s.y[j];
                         if (periodic) dy -= span_y * std::nearbyint(dy / span_y);
-                        const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
+                        double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
+                        if (period_x > 0) dx -= period_x * std::nearbyint(dx / period_x);
+                        if (period_z > 0) dz -= period_z * std::nearbyint(dz / period_z);
                         const double cut = reach + s.radius[j];
                         if (dx * dx + dy * dy + dz * dz < cut * cut && !(s.fixed[i] && s.fixed[j]))
                             list.push_back(j);

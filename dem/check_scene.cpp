@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dem/bed.h"
+#include "dem/stability.h"
 
 namespace gradwright {
 
@@ -58,11 +59,27 @@ std::vector<SceneProblem> validate(const Scene& s) {
     if (s.gap < 1.5 * d90 && s.gap >= d_max)
         warn(fmt::format("gap {:.0f} um is below 1.5 D90 ({:.0f} um): the layer will be thin and patchy",
                          s.gap * um, 1.5 * d90 * um));
-    if (s.rayleigh_fraction > 0.25)
+    if (s.rayleigh_fraction > 0.5 * kStabilityEdge)
         warn(
-            fmt::format("time step {:.2f} of Rayleigh's: grains wedged between blade and rim become unstable "
-                        "near 0.3; 0.2 is the default",
-                        s.rayleigh_fraction));
+            fmt::format("time step {:.2g} of Rayleigh's is {:.2g} times the stability edge, {:.2g} (measured "
+                        "in a dense heap at "
+                        "3 % overlap); half of it is safe, 0.2 is the default",
+                        s.rayleigh_fraction, s.rayleigh_fraction / kStabilityEdge, kStabilityEdge));
+    // Tops of a rough surface: its mean plane lies 0.395 r below them, and heights are jittered by r/5.
+    const double tops = (0.5 * 0.395 + 0.1) * s.roughness;
+    if (s.substrate == Substrate::fused && s.gap < tops)
+        fatal(fmt::format(
+            "gap {:.0f} um: the tops of the fused substrate stand {:.0f} um above its mean plane, so the "
+            "blade would run into it: raise process.gap or lower process.roughness",
+            s.gap * um, tops * um));
+    else if (!(s.gap > 0))
+        fatal(
+            fmt::format("gap {:.0f} um: the blade would run into the plate: raise process.gap", s.gap * um));
+    if (s.bed_depth < tops)
+        fatal(fmt::format(
+            "only {:.0f} um of powder are modelled below the blade, the rough floor's tops stand {:.0f} um "
+            "above its mean plane: the blade would run into it: raise numerics.bed_depth",
+            s.bed_depth * um, tops * um));
     if (s.blade_tip_radius > 0.5 * s.blade_thickness)
         fatal("blade tip radius is more than half the blade's thickness: lower machine.blade.tip_radius");
     if (s.bed_depth < 8 * d50 && s.bed_depth < s.dispenser_depth)

@@ -56,6 +56,8 @@ template <class T>
 template <bool kAdhesive, RollingModel kRolling>
 void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
     const double period = e.options_.period_y, inv_period = period > 0 ? 1 / period : 0;
+    const double period_x = e.options_.period_x, inv_period_x = period_x > 0 ? 1 / period_x : 0;
+    const double period_z = e.options_.period_z, inv_period_z = period_z > 0 ? 1 / period_z : 0;
     const LawConstants law = e.law_;
     const LawFault fault = e.options_.fault;
     for (std::size_t k = first; k < last; ++k) {
@@ -68,7 +70,9 @@ void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
             dx = pi.x - pj.x;
             dy = pi.y - pj.y;
             dz = pi.z - pj.z;
+            dx -= period_x * std::nearbyint(dx * inv_period_x);
             dy -= period * std::nearbyint(dy * inv_period);
+            dz -= period_z * std::nearbyint(dz * inv_period_z);
             const double sum = pi.r + pj.r;
             const double d2 = dx * dx + dy * dy + dz * dz;
             distance = std::sqrt(d2);
@@ -99,6 +103,12 @@ void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
             if (inv_period != 0) {
                 d[1] -= period * round4(d[1] * inv_period);
                 d[5] -= period * round4(d[5] * inv_period);
+                if (inv_period_x != 0 || inv_period_z != 0) {
+                    d[0] -= period_x * round4(d[0] * inv_period_x);
+                    d[4] -= period_x * round4(d[4] * inv_period_x);
+                    d[2] -= period_z * round4(d[2] * inv_period_z);
+                    d[6] -= period_z * round4(d[6] * inv_period_z);
+                }
             }
             const D4 d2lo = d[0] * d[0] + d[1] * d[1] + d[2] * d[2],
                      d2hi = d[4] * d[4] + d[5] * d[5] + d[6] * d[6];
@@ -250,7 +260,9 @@ void Engine::KernelOf<T>::wall_pass(std::size_t first, std::size_t last, double 
     GRADWRIGHT_PASSES(T, true, RollingModel::constant_torque)  \
     GRADWRIGHT_PASSES(T, false, RollingModel::constant_torque) \
     GRADWRIGHT_PASSES(T, true, RollingModel::spring)           \
-    GRADWRIGHT_PASSES(T, false, RollingModel::spring)
+    GRADWRIGHT_PASSES(T, false, RollingModel::spring)          \
+    GRADWRIGHT_PASSES(T, true, RollingModel::edem)             \
+    GRADWRIGHT_PASSES(T, false, RollingModel::edem)
 GRADWRIGHT_ALL_PASSES(double)
 GRADWRIGHT_ALL_PASSES(F8)
 

@@ -37,6 +37,10 @@ PairConstants pair_of(const Material& a, const Material& b, double softening) {
 Engine::Engine(const EngineOptions& options) : options_(options) {
     if (!(options.time_step > 0)) throw std::invalid_argument("Engine: time_step must be > 0");
     if (options.materials.empty()) throw std::invalid_argument("Engine: no materials");
+    if ((options.period_x > 0 || options.period_z > 0) && (!(options.period_y > 0) || options.sleep))
+        throw std::invalid_argument("Engine: period_x and period_z need period_y, and sleep off");
+    if (options.energy_account && options.sleep)
+        throw std::invalid_argument("Engine: the energy account counts every grain: sleep must be off");
     for (const auto& a : options.materials)
         for (const auto& b : options.materials) pairs_.push_back(pair_of(a, b, options.softening));
     const double e = std::clamp(options.interaction.coefficient_of_restitution, 1e-6, 1.0);
@@ -296,6 +300,7 @@ long Engine::advance(long steps) {
             check_health();
             if (!failed_.empty()) break;
             if (rebuild) {
+                if (options_.energy_account) book_leaving_grains();
                 rebuild_candidates();
                 kernel_->carry_history();
             }
@@ -311,8 +316,9 @@ long Engine::advance(long steps) {
             if (rebuild) max_overlap_seen_ = std::max(max_overlap_seen_, kernel_->max_overlap_ratio());
             times_.near_list += omp_get_wtime() - middle;
         }
-        const long now = kernel_->run(std::min(steps - done, sleep_look - steps_since_near_));
-        done += now;
+        done += options_.energy_account
+                    ? step_with_account()
+                    : kernel_->run(std::min(steps - done, sleep_look - steps_since_near_));
     }
     if (failed_.empty() && travel_ > near_skin_) check_health();  // a run that ends here is judged here
     return done;

@@ -17,6 +17,7 @@
 
 #include "dem/boundary.h"
 #include "dem/contact_law.h"
+#include "dem/energy_ledger.h"
 #include "dem/material.h"
 #include "dem/scene.h"
 #include "dem/state.h"
@@ -31,6 +32,8 @@ struct EngineOptions {
     double time_step = 0;                           ///< [s], > 0
     std::array<double, 3> gravity = {0, 0, -9.81};  ///< [m/s2]
     double period_y = 0;                            ///< [m], 0 = not periodic
+    double period_x = 0,
+           period_z = 0;  ///< [m], for a gas without walls (small: one cell each); with period_y
     Precision precision = Precision::single_law;
     bool sleep = false;
     double sleep_speed = 0.5e-3;   ///< grains slower than this ... [m/s]
@@ -41,6 +44,7 @@ struct EngineOptions {
     int threads = 0;               ///< 0 = OpenMP's default
     double speed_limit = 20;       ///< faster grains mean the run has diverged [m/s]
     double remove_beyond_x = 1e9;  ///< grains past this x leave the run (overflow) [m]
+    bool energy_account = false;   ///< keep an EnergyLedger: several times slower; not with `sleep`
     LawFault fault;
 };
 
@@ -127,6 +131,7 @@ class Engine {
     }
     double work_of_adhesion() const { return adhesion_; }  ///< scaled Gamma' [J/m2]
     int threads() const { return threads_; }
+    const EnergyLedger& energy() const { return energy_; }  ///< zeros without `energy_account`
 
     /// Bodies stand still until this instant counts: their shift is speed x (time since).
     void start_bodies() {
@@ -149,6 +154,8 @@ class Engine {
     double frame_speed() const;
     double body_speed(double frame) const;  ///< largest speed of a body or fixed grain against the frame
     void check_health();
+    long step_with_account();  ///< one step, booked in `energy_`
+    void book_leaving_grains();
 
     EngineOptions options_;
     State state_;
@@ -172,6 +179,7 @@ class Engine {
     double max_overlap_seen_ = 0;
     std::string failed_;
     EngineTimes times_;
+    EnergyLedger energy_;
 
     // candidate list, in cell order
     std::vector<double> built_x_, built_y_, built_z_;

@@ -29,6 +29,9 @@ struct Engine::Kernel {
     virtual double max_overlap_ratio() const = 0;
     virtual std::size_t contacts_beyond(double ratio) const = 0;  ///< overlap / smaller radius
     virtual double memory_bytes() const = 0;
+    virtual void remember_for_energy() = 0;  ///< what the step is going to change
+    /// Books the step just done; `opening`: only what is held, nothing was seen of the way there.
+    virtual void book_energy(EnergyLedger& ledger, bool opening) = 0;
 };
 
 template <class T>
@@ -112,6 +115,18 @@ struct Engine::KernelOf final : Engine::Kernel {
     double max_overlap_ratio() const override;
     std::size_t contacts_beyond(double ratio) const override;
     double memory_bytes() const override;
+
+    /// The run before the step that is booked; filled only with `energy_account`.
+    struct Before {
+        AlignedVector<PairTile> tiles;
+        AlignedVector<WallTile> walls;
+        State state;
+        AlignedVector<Motion> motion;
+        std::vector<Motion> earlier;  ///< predicted motion one step before, by grain number
+        double body_time = 0, earlier_body_time = 0;
+    } before;
+    void remember_for_energy() override;
+    void book_energy(EnergyLedger& ledger, bool opening) override;
 };
 
 }  // namespace gradwright

@@ -44,12 +44,13 @@ struct Layer {
     double packing_fraction() const;
 };
 
-/// Positions of every mobile grain at one instant, for pictures and VTK.
+/// Positions and velocities of every mobile grain at one instant, for pictures, VTK and the heap's measures
+/// (heap.h).
 struct Snapshot {
     double time = 0, blade_x = 0;        ///< [s], [m]
     std::vector<float> x, y, z, radius;  ///< [m], scene frame
     std::vector<std::uint8_t> is_a;
-    std::vector<float> speed;  ///< [m/s]
+    std::vector<float> vx, vy, vz;  ///< [m/s]
 };
 
 }  // namespace gradwright

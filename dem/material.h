@@ -1,19 +1,27 @@
 // Material of grains and walls, and the interaction shared by all pairs.
 #pragma once
 #include <string>
+#include <vector>
 
 namespace gradwright {
 
+struct ElementShare {
+    std::string element;    ///< chemical symbol: "Fe"
+    double wt_percent = 0;  ///< share by mass [wt%], > 0
+};
+
 struct Material {
     std::string name;
-    double density = 0;           ///< [kg/m3], > 0
-    double youngs_modulus = 0;    ///< real, unsoftened [Pa], > 0
-    double poissons_ratio = 0.3;  ///< [-], 0 <= nu < 0.5
-    std::string source;           ///< where the numbers come from
+    double density = 0;                          ///< [kg/m3], > 0
+    double youngs_modulus = 0;                   ///< real, unsoftened [Pa], > 0
+    double poissons_ratio = 0.3;                 ///< [-], 0 <= nu < 0.5
+    std::string source;                          ///< where the numbers come from
+    std::vector<ElementShare> composition = {};  ///< nominal; empty = not known. No spread depends on it
+    std::string composition_source = {};
 };
 
 enum class FrictionCap { thornton, edem_repulsive, normal };
-enum class RollingModel { none, constant_torque, spring };
+enum class RollingModel { none, constant_torque, spring, edem };
 enum class TangentialHistory { xi, rescale };
 enum class AdhesionScaling { cohesion_number, none };
 
@@ -26,7 +34,7 @@ struct Interaction {
     FrictionCap friction_cap = FrictionCap::thornton;
     RollingModel rolling_model = RollingModel::constant_torque;
     double rolling_regularisation_speed =
-        1e-4;  ///< [m/s]: constant_torque is linear (creeps) below it; 1e-3 keeps beds from settling
+        1e-4;  ///< [m/s]: constant_torque and edem are linear (creep) below it; 1e-3 keeps beds from settling
 };
 
 }  // namespace gradwright

@@ -10,6 +10,7 @@
 
 #include "dem/bed.h"
 #include "dem/random.h"
+#include "dem/stability.h"
 
 namespace gradwright {
 namespace {
@@ -212,8 +213,9 @@ void add_bed(Engine& engine, const Bed& bed, bool labelled) {
     }
 }
 
-void add_side_walls(Engine& engine, const Scene& scene) {
-    if (scene.sides == Sides::periodic) return;
+std::vector<Body> side_walls(const Scene& scene) {
+    std::vector<Body> sides;
+    if (scene.sides == Sides::periodic) return sides;
     for (const double sign : {1.0, -1.0}) {
         Body side;
         side.axis = 1;
@@ -221,8 +223,13 @@ void add_side_walls(Engine& engine, const Scene& scene) {
         side.offset = sign > 0 ? 0 : scene.width;
         side.material = kWallMaterial;
         side.frictionless = scene.sides == Sides::frictionless;
-        engine.add_body(side);
+        sides.push_back(side);
     }
+    return sides;
+}
+
+void add_side_walls(Engine& engine, const Scene& scene) {
+    for (const Body& side : side_walls(scene)) engine.add_body(side);
 }
 
 std::vector<GrainSpec> rough_surface(double x0, double x1, double width, double plane, double roughness,
@@ -275,12 +282,14 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     const double solid = 0.60 * area * (wanted_height + 1.5 * d50);
     const double z_floor = -scene.bed_depth;
 
-    // Rolling while packing is always the elastic-plastic spring: constant_torque has no rest (grains creep
-    // down at up to 4e-4 m/s below its regularisation, twice what "settled" allows). The spread uses the
-    // scene's own model.
+    // Rolling while packing is always the elastic-plastic spring: constant_torque and edem have no rest
+    // (grains creep down at up to 4e-4 m/s below its regularisation, twice what "settled" allows). The spread
+    // uses the scene's own model.
     EngineOptions eo = engine_options(scene, options.threads);
-    if (eo.interaction.rolling_model == RollingModel::constant_torque)
+    if (eo.interaction.rolling_model != RollingModel::none)
         eo.interaction.rolling_model = RollingModel::spring;
+    // Nor has a bed rest that loses nothing at its contacts: with e = 1 it rings for ever.
+    eo.interaction.coefficient_of_restitution = std::min(eo.interaction.coefficient_of_restitution, 0.5);
     eo.sleep = true;
     eo.sleep_speed = 0.01 * std::sqrt(scene.gravity * scene.powder[0].size.d50);
     Engine engine(eo);
@@ -355,8 +364,7 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     if (!engine.failed().empty()) {
         health.status = "diverged";
         health.reason =
-            fmt::format("packing diverged ({}); lower numerics.time_step.rayleigh_fraction (now {})",
-                        engine.failed(), scene.rayleigh_fraction);
+            fmt::format("packing diverged ({}); {}", engine.failed(), step_advice(scene.rayleigh_fraction));
     } else if (options.stop && options.stop->load()) {
         health.status = "interrupted";
         health.reason = "stopped while packing";

@@ -7,119 +7,21 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 
-#include "dem/bed.h"
 #include "dem/cache_file.h"
-#include "dem/random.h"
-#include "dem/spread.h"
+#include "dem/stability.h"
+#include "dem/stage.h"
 
 namespace gradwright {
 namespace {
 
-constexpr double kFar = 1.0;  // depth of the solid bodies [m]: anything beyond the scene
-
-// A grain below the edge that meets the dispenser's rim is pinched between blade and rim, whatever the
-// stiffness (friction 0.64 locks the wedge). The blade presses it with no more than the force at an overlap
-// of 0.6 % r, so that the grains it is pressed against keep within the 3 % rule (at 2 % r the neighbours of a
-// pinched grain reached 8 %).
-constexpr double kBladeYield = 0.006;
 constexpr double kJamOverlap = 0.05;  // of the radius: such a grain counts as pinched
+constexpr double kWorstStart = 0.15;  // of the radius: more is no settled bed
+constexpr double kStickyBond = 100;   // pull-off force over weight: above it a grain hangs where it touches
+constexpr double kFar = 1.0;          // beyond any scene [m]
 
 double volume_of(double r) {
     return 4.0 / 3.0 * std::numbers::pi * r * r * r;
-}
-
-/// Level and dose: the bed already stands raised (z = 0 is the blade's plane). Cut it so that the solid above
-/// z = 0 is (h - c) x area x bed packing in each chamber. Returns false when the bed is too low.
-bool level(Bed& bed, const Scene& scene, const PartitionCurve* partition, double& dosed) {
-    const double plan = scene.dispenser_length * scene.width;
-    const double area_a = partition ? partition->area_a(scene.dispenser_length, scene.width) : plan;
-    const double wanted[2] = {
-        (scene.dose_height - scene.headspace[0]) * area_a * bed.facts.packing_fraction,
-        (scene.dose_height - scene.headspace[1]) * (plan - area_a) * bed.facts.packing_fraction};
-    auto chamber = [&](std::size_t i) {
-        return partition && !partition->on_side_a(bed.x[i], bed.y[i]) ? 1 : 0;
-    };
-    std::vector<std::size_t> above[2];
-    for (std::size_t i = 0; i < bed.x.size(); ++i)
-        if (bed.z[i] > 0) above[chamber(i)].push_back(i);
-    std::vector<std::uint8_t> drop(bed.x.size(), 0);
-    dosed = 0;
-    for (int k = 0; k < 2; ++k) {
-        std::sort(above[k].begin(), above[k].end(), [&](auto a, auto b) { return bed.z[a] < bed.z[b]; });
-        double sum = 0;
-        for (const std::size_t i : above[k]) {
-            const double v = volume_of(bed.radius[i]);
-            if (sum + 0.5 * v > wanted[k])
-                drop[i] = 1;
-            else
-                sum += v;
-        }
-        if (sum < 0.97 * wanted[k]) return false;
-        dosed += sum;
-    }
-    Bed kept;
-    kept.facts = bed.facts;
-    for (std::size_t i = 0; i < bed.x.size(); ++i) {
-        if (drop[i]) continue;
-        kept.x.push_back(bed.x[i]);
-        kept.y.push_back(bed.y[i]);
-        kept.z.push_back(bed.z[i]);
-        kept.radius.push_back(bed.radius[i]);
-        kept.material.push_back(bed.material[i]);
-    }
-    bed = std::move(kept);
-    return true;
-}
-
-/// Bodies and fixed grains of the machine around the levelled bed.
-struct MachineBodies {
-    int blade = -1;
-};
-
-MachineBodies build_machine(Engine& engine, const Scene& scene) {
-    const double platform = scene.dispenser_length + scene.land, end = platform + scene.platform_length;
-    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth,
-                                       scene.roughness, scene.seed ^ 0xf100f))
-        engine.add_grain(g);
-    if (scene.substrate == Substrate::fused)
-        for (const auto& g :
-             rough_surface(platform, end, scene.width, -scene.gap, scene.roughness, scene.seed ^ 0x5b57a7e))
-            engine.add_grain(g);
-    auto box = [&](double x0, double x1, double top) {
-        Body b;
-        b.kind = Body::Kind::box;
-        b.x0 = x0;
-        b.x1 = x1;
-        b.z0 = -kFar;
-        b.z1 = top;
-        b.material = kWallMaterial;
-        engine.add_body(b);
-    };
-    Body back;  // x = 0, behind the blade
-    back.axis = 0;
-    back.sign = 1;
-    back.offset = 0;
-    back.material = kWallMaterial;
-    engine.add_body(back);
-    box(scene.dispenser_length, platform, 0);
-    box(end, end + kFar, 0);
-    if (scene.substrate == Substrate::plate) box(platform, end, -scene.gap);
-    Body blade;
-    blade.kind = Body::Kind::box;
-    blade.x1 = -20e-6;  // clear of the powder
-    blade.x0 = blade.x1 - scene.blade_thickness;
-    blade.z0 = 0;
-    blade.z1 = kFar;
-    blade.rounding = scene.blade_tip_radius;
-    blade.speed_x = scene.blade_speed;
-    blade.material = kWallMaterial;
-    blade.yield_ratio = kBladeYield;
-    MachineBodies out;
-    out.blade = engine.add_body(blade);
-    add_side_walls(engine, scene);
-    return out;
 }
 
 Snapshot snapshot_of(const Engine& engine, double blade_x) {
@@ -135,7 +37,9 @@ Snapshot snapshot_of(const Engine& engine, double blade_x) {
         shot.z.push_back(static_cast<float>(s.z[i]));
         shot.radius.push_back(static_cast<float>(s.radius[i]));
         shot.is_a.push_back(s.material[i] == 0);
-        shot.speed.push_back(static_cast<float>(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])));
+        shot.vx.push_back(static_cast<float>(v[0]));
+        shot.vy.push_back(static_cast<float>(v[1]));
+        shot.vz.push_back(static_cast<float>(v[2]));
     }
     return shot;
 }
@@ -221,7 +125,8 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
 SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options) {
     // A spread without labels is an origin map: kept, because it answers every partition. Labelled ones are
     // never read back: a confirmation is always spread.
-    const bool keep = !partition && !options.cache_folder.empty() && options.snapshots == 0;
+    const bool keep =
+        !partition && !options.cache_folder.empty() && options.snapshots == 0 && !options.energy_account;
     if (!keep) return spread_now(scene, partition, options);
     const double start = omp_get_wtime();
     const std::string key = fmt::format("spread format {}\n{}", kEngineFormat, scene.canonical_text());
@@ -240,53 +145,65 @@ namespace {
 
 SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options) {
     const double start = omp_get_wtime();
+    RunHealth health;
+    const Stage stage = set_stage(scene, partition, options, health);
     SpreadResult out;
-    Bed bed = cached_bed(scene, partition, options, out.health);
-    out.bed = bed.facts;
-    auto finish = [&]() -> SpreadResult& {
-        out.seconds = omp_get_wtime() - start;
-        out.seconds_cold = out.seconds - out.bed.seconds + out.bed.seconds_cold;
-        return out;
-    };
-    if (!out.health.ok()) return finish();
-    double dosed = 0;
-    if (!level(bed, scene, partition, dosed)) {
-        out.health.status = "not_settled";
-        out.health.reason =
-            "the settled bed is too low for the dose; raise numerics.bed_depth or lower the dosage factor";
-        return finish();
-    }
+    if (health.ok())
+        out = spread_stage(scene, stage, options);
+    else
+        out.health = health;
+    out.bed = stage.bed.facts;
+    out.seconds = omp_get_wtime() - start;
+    out.seconds_cold = out.seconds - out.bed.seconds + out.bed.seconds_cold;
+    return out;
+}
 
+/// Grains that are no longer between the walls or above the floors, where no force will bring them back.
+long lost_grains(const Engine& engine, const Scene& scene) {
+    const double low = -std::max(scene.bed_depth, scene.gap) - 2 * scene.roughness,
+                 beside = scene.sides == Sides::periodic ? kFar : scene.roughness;
+    const State& s = engine.state();
+    long count = 0;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        count += !s.fixed[i] && (s.z[i] < low || s.y[i] < -beside || s.y[i] > scene.width + beside ||
+                                 s.x[i] < -scene.roughness);
+    return count;
+}
+
+}  // namespace
+
+SpreadResult spread_stage(const Scene& scene, const Stage& stage, const SpreadOptions& options) {
+    const double start = omp_get_wtime();
+    SpreadResult out;
+    out.health.status = "ok";
+    const Bed& bed = stage.bed;
+    out.bed = bed.facts;
     EngineOptions eo = engine_options(scene, options.threads);
-    eo.sleep = scene.sleep;
-    const double platform = scene.dispenser_length + scene.land,
-                 platform_end = platform + scene.platform_length;
-    eo.remove_beyond_x = platform_end + scene.second_land;
+    eo.sleep = scene.sleep && !options.energy_account;
+    eo.energy_account = options.energy_account;
+    const double end = platform_end(scene);
+    eo.remove_beyond_x = end + scene.second_land;
     Engine engine(eo);
-    const MachineBodies machine = build_machine(engine, scene);
+    for (const GrainSpec& grain : stage.fixed) engine.add_grain(grain);
+    for (const Body& body : stage.bodies) engine.add_body(body);
     const int first_mobile = static_cast<int>(engine.state().size());
-    add_bed(engine, bed, partition != nullptr);
+    add_bed(engine, bed, stage.labelled);
     out.grains = static_cast<long>(bed.x.size());
     out.fixed_grains = first_mobile;
     out.time_step = engine.time_step();
-    {
-        // Bond number of the median grain between equals: F_po/(m g), F_po = 3/2 pi R* Gamma', R* = d/4.
-        const double d = scene.powder[0].size.number_quantile(0.5);
-        out.bond_number = 1.5 * std::numbers::pi * 0.25 * d * engine.work_of_adhesion() /
-                          (scene.powder[0].material.density * volume_of(0.5 * d) * scene.gravity);
-    }
-    out.snapshots.push_back(snapshot_of(engine, -20e-6));
+    out.bond_number = bond_number(scene, engine.work_of_adhesion());
+    out.snapshots.push_back(snapshot_of(engine, kBladeStart));
 
     engine.start_bodies();
     const double dt = engine.time_step();
-    const double start_x = -20e-6;
-    double goal = platform_end + 0.2e-3;  // known better once the blade is there
-    bool goal_known = false;
-    const double total = platform_end + scene.second_land * 0.5 - start_x;
+    const double start_x = kBladeStart;
+    double goal = end + 0.2e-3;  // known better once the blade is there
+    bool goal_known = false, looked = false;
+    const double total = end + scene.second_land * 0.5 - start_x;
     const long burst = std::max<long>(200, std::llround(20e-6 / (scene.blade_speed * dt)));
     int next_shot = 1;
     std::map<int, double> pinched;  // grain -> blade position when the pinch began
-    auto blade_x = [&] { return start_x + engine.body_shift_x(machine.blade); };
+    auto blade_x = [&] { return start_x + engine.body_shift_x(stage.blade); };
     auto fail = [&](const std::string& status, const std::string& reason) {
         out.health.status = status;
         out.health.reason = reason;
@@ -300,15 +217,30 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
             1, std::min<long>(burst, std::llround((goal - blade_x()) / (scene.blade_speed * dt)) + 1)));
         if (!engine.failed().empty()) {
             fail("diverged",
-                 fmt::format("grains moved at more than {:.3g} m/s or lost their numbers ({}); lower "
-                             "numerics.time_step.rayleigh_fraction (now {})",
-                             eo.speed_limit, engine.failed(), scene.rayleigh_fraction));
+                 fmt::format("grains moved at more than {:.3g} m/s or lost their numbers ({}); {}",
+                             eo.speed_limit, engine.failed(), step_advice(scene.rayleigh_fraction)));
             break;
         }
+        if (const long lost = lost_grains(engine, scene); lost > 0) {
+            fail("diverged", fmt::format("{} grains left the powder through a floor or a wall; make "
+                                         "process.roughness no larger than the powder's D50, or lower "
+                                         "numerics.time_step.rayleigh_fraction (now {})",
+                                         lost, scene.rayleigh_fraction));
+            break;
+        }
+        // The first look sees what the grains started with: released at once it would shoot them apart.
+        if (!looked && engine.max_overlap_ratio_seen() > kWorstStart) {
+            fail("overlap",
+                 fmt::format("grains start with overlaps of {:.0f} % of the radius ({:.0f} % is the "
+                             "limit): let the bed settle before it is spread",
+                             100 * engine.max_overlap_ratio_seen(), 100 * kWorstStart));
+            break;
+        }
+        looked = true;
         // Pinched at the rim: it rolls between blade and land at half the blade's speed, so the blade is past
         // it after twice its thickness. Pinched for longer: it is dragged along, a jam.
         std::map<int, double> still;
-        for (const std::size_t i : engine.overlapping_body(machine.blade, kJamOverlap)) {
+        for (const std::size_t i : engine.overlapping_body(stage.blade, kJamOverlap)) {
             const int id = engine.state().id[i];
             const auto known = pinched.find(id);
             if (known == pinched.end()) ++out.pinched_grains;
@@ -319,9 +251,15 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
                                               [](auto& a, auto& b) { return a.second < b.second; });
         if (longest != pinched.end() &&
             blade_x() - longest->second > 2 * scene.blade_thickness + 10 * scene.powder[0].size.d50) {
-            fail("jammed", fmt::format("a grain has been dragged in the nip over {:.2f} mm; raise the gap or "
-                                       "round the blade tip",
-                                       1e3 * (blade_x() - longest->second)));
+            if (out.bond_number > kStickyBond)
+                fail("does_not_flow", fmt::format("grains stick to the blade (Bond number {:.3g}); lower "
+                                                  "interaction.work_of_adhesion",
+                                                  out.bond_number));
+            else
+                fail("jammed",
+                     fmt::format("a grain has been dragged in the nip over {:.2f} mm; raise the gap or "
+                                 "round the blade tip",
+                                 1e3 * (blade_x() - longest->second)));
             break;
         }
         // Ten per cent of the radius in more than one grain of a thousand (and at least five): the softening
@@ -335,11 +273,10 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
                                         100 * crushed, scene.softening));
             break;
         }
-        if (!goal_known && blade_x() >= platform_end) {
-            goal =
-                platform_end + std::min(heap_length(engine, scene, platform_end, bed.facts.packing_fraction),
-                                        0.9 * scene.second_land);
-            goal = std::max(goal, platform_end + 0.1e-3);
+        if (!goal_known && blade_x() >= end) {
+            goal = end + std::min(heap_length(engine, scene, end, bed.facts.packing_fraction),
+                                  0.9 * scene.second_land);
+            goal = std::max(goal, end + 0.1e-3);
             goal_known = true;
         }
         const double fraction = std::clamp((blade_x() - start_x) / total, 0.0, 1.0);
@@ -352,9 +289,7 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
     }
     const double last_blade = blade_x();
     engine.stop_bodies();
-    // End: mean kinetic energy per grain below 1e-3 m g d.
-    const double quiet = 1e-3 * scene.powder[0].material.density * scene.powder[0].size.mean_grain_volume() *
-                         scene.gravity * scene.powder[0].size.d50 * static_cast<double>(out.grains);
+    const double quiet = quiet_energy(scene, bed.x.size());
     for (int k = 0; k < 40 && out.health.ok() && engine.kinetic_energy() > quiet; ++k) engine.advance(500);
 
     out.steps = engine.steps();
@@ -367,76 +302,24 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
                         100 * out.health.max_overlap_ratio));
     out.snapshots.push_back(snapshot_of(engine, last_blade));
     out.state_hash = engine.state_hash();
+    out.energy = engine.energy();
 
     // The laid layer.
-    Layer& layer = out.layer;
-    layer.labelled = partition != nullptr;
-    layer.periodic = scene.sides == Sides::periodic;
-    layer.width = scene.width;
-    layer.dispenser_length = scene.dispenser_length;
-    layer.platform_length = scene.platform_length;
-    layer.gap = scene.gap;
-    layer.dosed_solid_volume = dosed;
-    layer.bed_packing = bed.facts.packing_fraction;
-    layer.packing_seed = scene.seed;
     const State& s = engine.state();
-    std::vector<std::size_t> by_id(s.size());
-    std::iota(by_id.begin(), by_id.end(), 0);
-    std::sort(by_id.begin(), by_id.end(), [&](auto a, auto b) { return s.id[a] < s.id[b]; });
-    std::vector<std::uint8_t> present(bed.x.size(), 0);
-    std::vector<double> floor_moves;
-    for (const std::size_t i : by_id) {
-        if (s.fixed[i]) continue;
-        const std::size_t k = static_cast<std::size_t>(s.id[i] - first_mobile);
-        present[k] = 1;
-        const double d50 = scene.powder[0].size.d50;
-        if (bed.z[k] < -scene.bed_depth + scene.powder[0].size.d90 && bed.x[k] > 2 * d50 &&
-            bed.x[k] < scene.dispenser_length - 4 * d50)
-            floor_moves.push_back(std::hypot(s.x[i] - bed.x[k], s.z[i] - bed.z[k]));
-        if (s.x[i] >= platform_end) {
-            layer.overflow_solid_volume += volume_of(s.radius[i]);
-            if (partition && s.material[i] == 0) layer.overflow_solid_volume_a += volume_of(s.radius[i]);
-        }
-        if (s.x[i] < platform || s.x[i] >= platform_end || s.z[i] >= 0) continue;
-        layer.origin_x.push_back(bed.x[k]);
-        layer.origin_y.push_back(bed.y[k]);
-        layer.origin_z.push_back(bed.z[k]);
-        layer.deposit_x.push_back(s.x[i] - platform);
-        layer.deposit_y.push_back(s.y[i]);
-        layer.deposit_z.push_back(s.z[i]);
-        layer.volume.push_back(volume_of(s.radius[i]));
-        layer.radius.push_back(s.radius[i]);
-        layer.is_a.push_back(partition && s.material[i] == 0);
-    }
-    for (std::size_t k = 0; k < present.size(); ++k) {
-        if (present[k]) continue;
-        layer.overflow_solid_volume += volume_of(bed.radius[k]);
-        if (partition && bed.material[k] == 0) layer.overflow_solid_volume_a += volume_of(bed.radius[k]);
-    }
-    if (!floor_moves.empty()) {
-        std::sort(floor_moves.begin(), floor_moves.end());
-        const double p95 = floor_moves[floor_moves.size() * 95 / 100];
-        if (p95 > 0.1 * scene.powder[0].size.d50)
-            out.health.warnings.push_back(
-                fmt::format("the modelled bed is shallow: grains at its floor moved {:.2f} D50 (95th "
-                            "percentile, rule 0.1); raise "
-                            "numerics.bed_depth (now {:.0f} um) to see whether the result changes",
-                            p95 / scene.powder[0].size.d50, scene.bed_depth * 1e6));
-    }
-    if (out.health.ok() && layer.size() > 0) {
-        // Starved: the last tenth of the platform has less than a third of the mean solid.
-        double last = 0;
-        for (std::size_t k = 0; k < layer.size(); ++k)
-            if (layer.deposit_x[k] > 0.9 * scene.platform_length) last += layer.volume[k];
-        if (last * 10 < layer.solid_volume() / 3)
-            out.health.warnings.push_back(
-                "the heap ran dry before the platform's end: raise the dosage factor");
-    }
-    if (out.health.ok() && layer.size() == 0 && out.grains > 0)
-        fail("starved", "no grain was laid on the platform; raise the dosage factor or the gap");
-    return finish();
+    std::vector<GrainPlace> places;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        if (!s.fixed[i])
+            places.push_back({static_cast<std::size_t>(s.id[i] - first_mobile), s.x[i], s.y[i], s.z[i]});
+    std::sort(places.begin(), places.end(),
+              [](const GrainPlace& a, const GrainPlace& b) { return a.bed_index < b.bed_index; });
+    out.layer = measure_layer(scene, stage, places, out.health);
+    if (out.health.status == "starved" && out.bond_number > kStickyBond)
+        fail("does_not_flow",
+             fmt::format("the powder crossed the platform in lumps (Bond number {:.3g}; {}); lower "
+                         "interaction.work_of_adhesion",
+                         out.bond_number, out.health.reason));
+    out.seconds = out.seconds_cold = omp_get_wtime() - start;
+    return out;
 }
-
-}  // namespace
 
 }  // namespace gradwright

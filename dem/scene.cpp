@@ -36,6 +36,7 @@ std::string Scene::canonical_text() const {
     number("roughness", roughness);
     number("sides", static_cast<int>(sides));
     number("plate_thickness", plate_thickness);
+    number("allow_starved", allow_starved);
     auto material = [&](const char* key, const Material& m) {
         out +=
             fmt::format("{} = {:.17g} {:.17g} {:.17g}\n", key, m.density, m.youngs_modulus, m.poissons_ratio);
@@ -54,6 +55,8 @@ std::string Scene::canonical_text() const {
     number("friction_cap", static_cast<int>(interaction.friction_cap));
     number("rolling_model", static_cast<int>(interaction.rolling_model));
     number("rolling_speed", interaction.rolling_regularisation_speed);
+    // named only where it departs, so that the beds and maps kept so far are still found
+    if (!adhesive_walls) number("adhesive_walls", 0);
     number("softening", softening);
     number("adhesion_scaling", static_cast<int>(adhesion_scaling));
     number("rayleigh_fraction", rayleigh_fraction);

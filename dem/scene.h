@@ -47,10 +47,13 @@ struct Scene {
     double roughness = 40e-6;  ///< diameter of the fixed grains of a fused substrate and of the bed floor [m]
     Sides sides = Sides::periodic;
     double plate_thickness = 0;  ///< t of the temporary partition [m]; 0 = ideal
+    bool allow_starved = false;  ///< a layer that ends short of the platform's end is a result, not a failure
     // powders; index 0 = A, 1 = B
     std::array<Powder, 2> powder;
     Material wall;
     Interaction interaction;
+    bool adhesive_walls =
+        true;  ///< false: land, blade and sides are plain Hertz walls, as in engines without JKR walls
     // numerics
     double softening = 1e-4;  ///< s: E' = s E
     AdhesionScaling adhesion_scaling = AdhesionScaling::cohesion_number;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/energy_ledger.h"
 #include "dem/layer.h"
 #include "dem/scene.h"
 
@@ -21,6 +22,7 @@ struct SpreadOptions {
     std::string cache_folder;  ///< settled beds; empty = no cache
     int snapshots = 0;         ///< instants kept between first and last; 0 = none but first and last
     std::function<void(const Progress&)> progress;
+    bool energy_account = false;              ///< fill SpreadResult::energy: no sleep, several times slower
     const std::atomic<bool>* stop = nullptr;  ///< set by a signal: the run ends with status "interrupted"
 };
 
@@ -50,6 +52,7 @@ struct SpreadResult {
     double bond_number = 0;                ///< F_po/(m g) of the median grain, as computed
     double seconds = 0, seconds_cold = 0;  ///< wall; cold adds the stored cost of what came from a cache
     std::string state_hash;                ///< of positions and velocities at the end
+    EnergyLedger energy;                   ///< of the spread, from the blade's start; with `energy_account`
 };
 
 /// One spread. `partition`: null = no labels (all grains have powder A's material and sizes: an origin-map

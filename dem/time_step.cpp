@@ -16,6 +16,7 @@ double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, doub
     State& s = e.state_;
     const double dt = e.options_.time_step;
     const auto g = e.options_.gravity;
+    const bool late = e.options_.fault.late_velocity;
     double top = 0, sum = 0;  // std::max drops what is not a number, a sum keeps it
     for (std::size_t k = first; k < last; ++k) {
         const std::int32_t i = e.awake_[k];
@@ -46,7 +47,7 @@ double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, doub
         const double speed2 = forward * forward + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
         top = std::max(top, speed2);
         sum += speed2;
-        const double half = 0.5 * dt;
+        const double half = late ? 0 : 0.5 * dt;
         position[i].x = s.x[i];
         position[i].y = s.y[i];
         position[i].z = s.z[i];
@@ -144,6 +145,9 @@ long Engine::KernelOf<T>::run(long steps) {
     if (rolling == RollingModel::constant_torque)
         return adhesive ? run_with<true, RollingModel::constant_torque>(steps)
                         : run_with<false, RollingModel::constant_torque>(steps);
+    if (rolling == RollingModel::edem)
+        return adhesive ? run_with<true, RollingModel::edem>(steps)
+                        : run_with<false, RollingModel::edem>(steps);
     return adhesive ? run_with<true, RollingModel::spring>(steps)
                     : run_with<false, RollingModel::spring>(steps);
 }

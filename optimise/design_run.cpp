@@ -6,6 +6,7 @@
 
 #include "optimise/dem_evaluator.h"
 #include "optimise/kinematic_evaluator.h"
+#include "optimise/lammps_spread.h"
 #include "optimise/map_evaluator.h"
 #include "optimise/partition_family.h"
 
@@ -69,7 +70,7 @@ Design start_design(const Study& study) {
 }
 
 Evaluation evaluate_once(const Study& study, const Design& design, Fidelity fidelity, std::uint64_t seed,
-                         const RunOptions& options) {
+                         const RunOptions& options, SpreadResult* spread) {
     SpreadRunner runner(options);
     Journal journal(options.journal_folder);
     switch (fidelity) {
@@ -80,10 +81,15 @@ Evaluation evaluate_once(const Study& study, const Design& design, Fidelity fide
         }
         case Fidelity::map:
             return MapEvaluator(study, runner, &journal).evaluate(design, seed);
+        case Fidelity::lammps:
+            return LammpsEvaluator(study, options, options.lammps_folder, &journal).evaluate(design, seed);
         case Fidelity::full:
             break;
     }
-    return DemEvaluator(study, runner, &journal).evaluate(design, seed);
+    DemEvaluator evaluator(study, runner, &journal);
+    const Evaluation evaluation = evaluator.evaluate(design, seed);
+    if (spread) *spread = evaluator.last();
+    return evaluation;
 }
 
 }  // namespace gradwright

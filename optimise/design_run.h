@@ -19,7 +19,8 @@ struct RunOptions {
     int snapshots = 2;
     std::function<void(const std::string& stage, double fraction)> progress;
     const std::atomic<bool>* stop = nullptr;
-    SpreadFunction spread;  ///< empty = run_spread
+    SpreadFunction spread;      ///< empty = run_spread
+    std::string lammps_folder;  ///< fidelity lammps: deck, data and log stay here; empty = a temporary folder
 };
 
 /// Packing seeds derived from study.seed by SplitMix64 (see design_run.cpp). Map seeds are even, confirmation
@@ -33,9 +34,10 @@ std::uint64_t confirmation_seed(std::uint64_t study_seed, int index);
 Design start_design(const Study& study);
 
 /// One design at one fidelity: the `evaluate` verb. `seed` is the packing seed of the first spread; a map
-/// pools study.map_spreads.
+/// pools study.map_spreads. `spread`, when given, takes the spread itself with its options.snapshots instants
+/// (fidelity full only; else untouched).
 Evaluation evaluate_once(const Study& study, const Design& design, Fidelity fidelity, std::uint64_t seed,
-                         const RunOptions& options);
+                         const RunOptions& options, SpreadResult* spread = nullptr);
 
 StudyResult run_map_strategy(const Study& study, const RunOptions& options);
 StudyResult run_bobyqa_strategy(const Study& study, Fidelity fidelity, int budget, const RunOptions& options);

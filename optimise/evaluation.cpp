@@ -32,6 +32,8 @@ const char* to_string(Fidelity fidelity) {
             return "map";
         case Fidelity::full:
             return "full";
+        case Fidelity::lammps:
+            return "lammps";
     }
     return "unknown";
 }

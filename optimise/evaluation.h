@@ -11,7 +11,7 @@
 
 namespace gradwright {
 
-enum class Fidelity { kinematic, map, full };
+enum class Fidelity { kinematic, map, full, lammps };
 const char* to_string(Fidelity fidelity);
 
 struct Evaluation {

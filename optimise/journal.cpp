@@ -165,7 +165,7 @@ const auto evaluation_fields = [](auto io, auto& e) {
 };
 
 constexpr Norm kNorms[] = {Norm::rmse, Norm::mean_absolute, Norm::max};
-constexpr Fidelity kFidelities[] = {Fidelity::kinematic, Fidelity::map, Fidelity::full};
+constexpr Fidelity kFidelities[] = {Fidelity::kinematic, Fidelity::map, Fidelity::full, Fidelity::lammps};
 template <class T, std::size_t N>
 T named(const T (&all)[N], const std::string& name) {
     for (const T value : all)

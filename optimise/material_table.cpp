@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "optimise/toml_reader.h"
 
@@ -23,7 +25,68 @@ double sourced(Section& material, const std::string& key, const std::string& dim
     return value;
 }
 
+/// Symbols of the elements up to uranium: a misspelt one must not become a new element.
+bool is_element(const std::string& symbol) {
+    static constexpr std::string_view kSymbols =
+        " H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca Sc Ti V Cr Mn Fe Co Ni Cu Zn Ga Ge As Se Br Kr "
+        "Rb "
+        "Sr Y Zr Nb Mo Tc Ru Rh Pd Ag Cd In Sn Sb Te I Xe Cs Ba La Ce Pr Nd Pm Sm Eu Gd Tb Dy Ho Er Tm Yb Lu "
+        "Hf Ta W Re Os Ir Pt Au Hg Tl Pb Bi Po At Rn Fr Ra Ac Th Pa U ";
+    return kSymbols.find(" " + symbol + " ") != std::string_view::npos;
+}
+
 }  // namespace
+
+void read_composition(Section& material, Material& into, const std::string& source) {
+    if (!material.has("composition")) {
+        material.know("composition");
+        return;
+    }
+    Section composition = material.sub("composition");
+    const TomlReader::Found found = composition.find("wt");
+    Section wt = composition.sub("wt");
+    const toml::table* table = found.node ? found.node->as_table() : nullptr;
+    if (!found.node) composition.missing("wt", "write wt = { Ni = 52.5, Fe = \"balance\" }");
+    std::string balance;
+    double sum = 0;
+    if (table)
+        for (const auto& [key, node] : *table) {
+            const std::string element(key.str());
+            const TomlReader::Found at = wt.find(element);
+            if (!is_element(element)) {
+                wt.problem(at, element, "is no chemical symbol", "such as Fe, Ni, Cr");
+            } else if (node.value<std::string>() == "balance") {
+                if (!balance.empty())
+                    wt.problem(at, element, "is a second balance", "only one element takes what is left");
+                balance = element;
+            } else {
+                const double share = wt.number(element, {0, "a number of wt%, or \"balance\"", "given", true},
+                                               Range::above_to(0, 100));
+                into.composition.push_back({element, share});
+                sum += share;
+            }
+        }
+    if (sum > 100 + 1e-9)
+        composition.problem(found, "wt", fmt::format("adds up to {:.6g} wt%", sum),
+                            "100 wt% are all there is");
+    else if (!balance.empty())
+        into.composition.push_back({balance, 100 - sum});
+    wt.finish();
+    into.composition_source = composition.text("source", source, "not given");
+    if (source.empty() && !composition.has("source"))
+        composition.missing("source", "say where the numbers come from");
+    composition.finish();
+    std::stable_sort(
+        into.composition.begin(), into.composition.end(),
+        [](const ElementShare& a, const ElementShare& b) { return a.wt_percent > b.wt_percent; });
+}
+
+std::string composition_text(const Material& material) {
+    std::string text;
+    for (const ElementShare& share : material.composition)
+        text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", share.element, share.wt_percent);
+    return text.empty() ? "not known" : text;
+}
 
 std::vector<Material> read_materials(const std::string& file) {
     std::ifstream stream(file);
@@ -47,6 +110,7 @@ std::vector<Material> read_materials(const std::string& file) {
         material.poissons_ratio =
             sourced(section, "poissons_ratio", "", Range{.low = 0, .high = 0.5, .high_open = true},
                     "Poisson's ratio", material.source);
+        read_composition(section, material);
         section.finish();
         materials.push_back(std::move(material));
     }

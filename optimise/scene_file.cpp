@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "optimise/machine.h"
+#include "optimise/material_table.h"
 
 namespace gradwright {
 namespace {
@@ -100,6 +101,9 @@ Material read_material(TomlReader& reader, Section& powder, const std::string& l
                        source_of(material, "Young's modulus"));
         reader.derived(path + ".poissons_ratio", material.poissons_ratio, "",
                        source_of(material, "Poisson's ratio"));
+        if (!material.composition.empty())
+            reader.record({path + ".composition", composition_text(material), "wt%", "default",
+                           "material table: " + material.composition_source});
         return material;
     }
     Material material;
@@ -120,6 +124,7 @@ Material read_material(TomlReader& reader, Section& powder, const std::string& l
         own.number("poissons_ratio", {0.3, "our default: the paper gives none", "assumed"},
                    Range{.low = 0, .high = 0.5, .high_open = true});
     material.source = own.text("source", "the study file", "not given");
+    read_composition(own, material, "the study file");
     own.finish();
     return material;
 }
@@ -337,6 +342,7 @@ void read_process(TomlReader& reader, Section& root, Study& study) {
                                              Range::between(0, kLargestPlan));
     study.allow_starved =
         process.boolean("allow_starved", false, "a supply ratio below 1.05 is refused unless this is true");
+    scene.allow_starved = study.allow_starved;
     scene.gravity =
         process.quantity("gravity", "acceleration", {scene.gravity, "standard"}, Range::above_to(0, 1000));
     process.finish();
@@ -403,10 +409,11 @@ void read_interaction(TomlReader& reader, Section& root, Study& study) {
                                : cap == "normal" ? FrictionCap::normal
                                                  : FrictionCap::edem_repulsive;
     const std::string rolling =
-        section.choice("rolling_model", {"constant_torque", "spring", "none"}, "constant_torque",
+        section.choice("rolling_model", {"constant_torque", "edem", "spring", "none"}, "constant_torque",
                        "our default: the paper's model is not named");
     interaction.rolling_model = rolling == "none"     ? RollingModel::none
                                 : rolling == "spring" ? RollingModel::spring
+                                : rolling == "edem"   ? RollingModel::edem
                                                       : RollingModel::constant_torque;
     interaction.rolling_regularisation_speed =
         section.quantity("rolling_regularisation_speed", "speed",

@@ -5,8 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "reports/hdf5_file.h"
-#include "reports/safe_write.h"
+#include "reports/image_file.h"
 
 namespace gradwright {
 namespace {
@@ -25,29 +24,15 @@ std::vector<double> twice(std::vector<double> values) {
 }  // namespace
 
 void write_map_file(const GradationMap& map, double thickness, const std::string& path) {
-    const hsize_t nx = map.x_m.size(), ny = map.y_m.size();
+    const std::size_t nx = map.x_m.size(), ny = map.y_m.size();
     if (nx == 0 || ny == 0 || map.gi.size() != nx * ny || map.mass_kg.size() != nx * ny)
         throw std::invalid_argument("GI map for " + path + " is empty or its sizes disagree");
-    const double dx = spacing(map.x_m), dy = spacing(map.y_m);
-    const std::int64_t version[] = {1, 0};
-    const std::int64_t extent[] = {
-        0, static_cast<std::int64_t>(nx) - 1, 0, static_cast<std::int64_t>(ny) - 1, 0, 1};
-    const double origin[] = {map.x_m[0], map.y_m[0], -thickness}, steps[] = {dx, dy, thickness};
-    const double direction[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    write_aside(path, [&](const std::string& aside) {
-        H5Writer file(aside);
-        file.group("/VTKHDF");
-        file.attribute("/VTKHDF", "Version", version);
-        file.attribute("/VTKHDF", "Type", "ImageData", AttributeText::ascii);
-        file.attribute("/VTKHDF", "WholeExtent", extent);
-        file.attribute("/VTKHDF", "Origin", origin);
-        file.attribute("/VTKHDF", "Spacing", steps);
-        file.attribute("/VTKHDF", "Direction", direction);
-        file.group("/VTKHDF/PointData");
-        file.write("/VTKHDF/PointData/gi", twice(map.gi), {2, ny, nx});
-        file.write("/VTKHDF/PointData/mass", twice(map.mass_kg), {2, ny, nx});
-        file.flush();
-    });
+    ImageData image;
+    image.points = {nx, ny, 2};
+    image.origin = {map.x_m[0], map.y_m[0], -thickness};
+    image.spacing = {spacing(map.x_m), spacing(map.y_m), thickness};
+    image.arrays = {{"gi", 1, twice(map.gi)}, {"mass", 1, twice(map.mass_kg)}};
+    write_image_file(image, path);
 }
 
 GradationMap mean_map(const std::vector<const GradationMap*>& maps) {

@@ -1,7 +1,6 @@
 // GI map for ParaView: VTKHDF 1.0 ImageData. Point data gi [-] (NaN where empty) and mass [kg] stand at the
-// map's cell centres, the same on the layer's lower and upper face: the reader of VTK 9.1 (ParaView 5.10)
-// sizes cell data wrongly and newer ones reduce a flat image to two dimensions, while a slab of points reads
-// alike in all of them. x from the platform's near edge, y across [m].
+// map's cell centres, the same on the layer's lower and upper face (image_file.h says why). x from the
+// platform's near edge, y across [m].
 #pragma once
 #include <string>
 #include <vector>

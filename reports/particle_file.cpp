@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -41,7 +42,16 @@ void write_particle_file(const Snapshot& snapshot, const std::string& path) {
         file.group("/VTKHDF/PointData");
         file.write("/VTKHDF/PointData/radius", snapshot.radius, {n});
         if (snapshot.is_a.size() == n) file.write("/VTKHDF/PointData/is_a", snapshot.is_a, {n});
-        if (snapshot.speed.size() == n) file.write("/VTKHDF/PointData/speed", snapshot.speed, {n});
+        if (snapshot.vx.size() == n && snapshot.vy.size() == n && snapshot.vz.size() == n) {
+            std::vector<float> velocity, speed;
+            for (std::size_t i = 0; i < n; ++i) {
+                const float v[] = {snapshot.vx[i], snapshot.vy[i], snapshot.vz[i]};
+                velocity.insert(velocity.end(), v, v + 3);
+                speed.push_back(std::hypot(v[0], v[1], v[2]));
+            }
+            file.write("/VTKHDF/PointData/velocity", velocity, {n, 3});
+            file.write("/VTKHDF/PointData/speed", speed, {n});
+        }
         file.flush();
     });
 }

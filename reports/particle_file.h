@@ -10,7 +10,8 @@
 
 namespace gradwright {
 
-/// One instant. Point data: radius [m], is_a [-], speed [m/s]. Throws std::runtime_error naming the path.
+/// One instant. Point data: radius [m], is_a [-], velocity (3) and speed [m/s]. Throws std::runtime_error
+/// naming the path.
 void write_particle_file(const Snapshot& snapshot, const std::string& path);
 
 /// All instants as FOLDER/particles_0000.vtkhdf ... and FOLDER/particles.vtkhdf.series. Returns the names

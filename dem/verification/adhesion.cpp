@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dem/verification/laboratory.h"
+#include "dem/verification/curves.h"
 
 namespace gradwright {
 using namespace verification;
@@ -142,47 +142,61 @@ void law_cases(VerificationCases& out, const VerificationOptions& options, doubl
     }
 }
 
+/// One instant of a contact that is pushed and pulled.
+struct PullPoint {
+    double overlap = 0, force = 0;  ///< [m], [N], repulsion > 0
+    bool made = false, back = false, gone = false;
+};
+
 /// Pushes a heavy grain onto a fixed one and pulls it off again, so slowly and with so much inertia that its
-/// way is given; the force is what the engine reports on the fixed grain.
+/// way is given; the force is what the engine reports on the fixed grain. Ends one step after parting.
+std::vector<PullPoint> pull_contact(const VerificationOptions& options, const AdhesiveRow& row,
+                                    int per_tear_off) {
+    const double tear_off = std::fabs(curve_of(row).tear_off_overlap());
+    Interaction interaction = bare_interaction();
+    interaction.work_of_adhesion = row.work_of_adhesion;
+    const double speed = 1e-3, dt = tear_off / per_tear_off / speed;
+    Engine engine(
+        laboratory_options(options, grain_material(1e20, row.youngs_modulus, 0.3), interaction, dt));
+    engine.add_grain({.radius = row.radius_1, .fixed = true});
+    const double gap = 0.25 * tear_off;
+    engine.add_grain({.x = row.radius_1 + row.radius_2 + gap, .vx = -speed, .radius = row.radius_2});
+    std::vector<PullPoint> out;
+    PullPoint p;
+    for (int step = 0; step < 12 * per_tear_off && !p.gone; ++step) {
+        p.overlap = row.radius_1 + row.radius_2 - engine.state().x[index_of(engine, 1)];
+        engine.advance(1);  // evaluates the force at the overlap just read
+        p.force = -engine.force_on_fixed().x;
+        p.made = p.made || p.overlap >= 0;
+        p.gone = p.back && engine.contacts() == 0;
+        out.push_back(p);
+        if (!p.back && p.overlap > 3 * tear_off) {
+            engine.state().vx[index_of(engine, 1)] = speed;
+            engine.refresh();
+            p.back = true;
+        }
+    }
+    return out;
+}
+
 void engine_cases(VerificationCases& out, const VerificationOptions& options, double tolerance) {
     for (const AdhesiveRow& row : kRows) {
         const Jkr jkr = curve_of(row);
         const double tear_off = std::fabs(jkr.tear_off_overlap());
-        Interaction interaction = bare_interaction();
-        interaction.work_of_adhesion = row.work_of_adhesion;
         const int per_tear_off = 4000;
-        const double speed = 1e-3, dt = tear_off / per_tear_off / speed;
-        Engine engine(
-            laboratory_options(options, grain_material(1e20, row.youngs_modulus, 0.3), interaction, dt));
-        engine.add_grain({.radius = row.radius_1, .fixed = true});
-        const double gap = 0.25 * tear_off;
-        engine.add_grain({.x = row.radius_1 + row.radius_2 + gap, .vx = -speed, .radius = row.radius_2});
-        double worst = 0, worst_expected = 0, worst_obtained = 0, work = 0, before_overlap = 0,
-               before_force = 0, last = 0;
-        bool made = false, back = false;
-        for (int step = 0; step < 12 * per_tear_off; ++step) {
-            const double overlap = row.radius_1 + row.radius_2 - engine.state().x[index_of(engine, 1)];
-            engine.advance(1);                                // evaluates the force at the overlap just read
-            const double force = -engine.force_on_fixed().x;  // > 0: repulsion
-            made = made || overlap >= 0;
-            const bool gone = back && engine.contacts() == 0;
-            const double expected = made && !gone ? jkr.force(jkr.radius_at(overlap)) : 0;
+        const auto way = pull_contact(options, row, per_tear_off);
+        double worst = 0, worst_expected = 0, worst_obtained = 0, work = 0, last = 0;
+        for (std::size_t step = 0; step < way.size(); ++step) {
+            const PullPoint& p = way[step];
+            const double expected = p.made && !p.gone ? jkr.force(jkr.radius_at(p.overlap)) : 0;
             // the last thousandth before tear-off hangs on the overlap's own rounding
-            if (!gone && !(back && overlap < -0.999 * tear_off)) {
+            if (!p.gone && !(p.back && p.overlap < -0.999 * tear_off)) {
                 const double error =
-                    std::fabs(force - expected) / std::max(std::fabs(expected), jkr.pull_off());
-                if (!(error <= worst)) worst = error, worst_expected = expected, worst_obtained = force;
+                    std::fabs(p.force - expected) / std::max(std::fabs(expected), jkr.pull_off());
+                if (!(error <= worst)) worst = error, worst_expected = expected, worst_obtained = p.force;
             }
-            if (step > 0) work += 0.5 * (force + before_force) * (overlap - before_overlap);
-            before_overlap = overlap;
-            before_force = force;
-            if (gone) break;
-            last = overlap;
-            if (!back && overlap > 3 * tear_off) {
-                engine.state().vx[index_of(engine, 1)] = speed;
-                engine.refresh();
-                back = true;
-            }
+            if (step > 0) work += 0.5 * (p.force + way[step - 1].force) * (p.overlap - way[step - 1].overlap);
+            if (!p.gone) last = p.overlap;
         }
         VerificationCase c = judged("V5", fmt::format("{}, pulled by the engine", row.name),
                                     "worst force of the way [N], error of max(|F|, F_po)", worst_expected,
@@ -200,31 +214,59 @@ void engine_cases(VerificationCases& out, const VerificationOptions& options, do
     }
 }
 
-/// Two like grains at a closing speed: do they stay together?
-bool sticks(const VerificationOptions& options, double restitution, double speed) {
+}  // namespace
+
+namespace verification {
+
+/// They stay together when they approach again before the contact is torn off.
+double adhesive_rebound(const VerificationOptions& options, double restitution, double speed, double dt) {
     Interaction interaction = bare_interaction();
     interaction.work_of_adhesion = kScaled;
     interaction.coefficient_of_restitution = restitution;
-    const double radius = 20e-6, dt = 5e-9;  // about 6000 steps in one oscillation of the bonded pair
+    const double radius = 20e-6;
     Engine engine(laboratory_options(options, grain_material(8000, 2e7, 0.3), interaction, dt));
     engine.add_grain({.x = -radius - 1.3 * dt * speed, .vx = 0.5 * speed, .radius = radius});
     engine.add_grain({.x = radius, .vx = -0.5 * speed, .radius = radius});
     bool touched = false, parting = false;
     for (int block = 0; block < 4000; ++block) {
         engine.advance(10);
+        const double closing =
+            engine.state().vx[index_of(engine, 0)] - engine.state().vx[index_of(engine, 1)];
         if (engine.contacts() > 0)
             touched = true;
         else if (touched)
-            return false;
-        const double closing =
-            engine.state().vx[index_of(engine, 0)] - engine.state().vx[index_of(engine, 1)];
+            return -closing;
         if (touched && closing < 0) parting = true;
-        if (parting && closing > 0) return true;  // pulled back before tear-off
+        if (parting && closing > 0) return 0;  // pulled back before tear-off
     }
-    return true;
+    return 0;
 }
 
-}  // namespace
+double elastic_sticking_speed() {
+    return std::sqrt(2 * curve_of(kRows[0]).hysteresis_work() / (0.5 * sphere_mass(8000, 20e-6)));
+}
+
+JkrLoop jkr_loop(const VerificationOptions& options) {
+    const Jkr jkr = curve_of(kRows[0]);
+    const double tear_off = std::fabs(jkr.tear_off_overlap()), pull_off = jkr.pull_off();
+    JkrLoop out;
+    const auto way = pull_contact(options, kRows[0], 400);
+    for (std::size_t k = 0; k < way.size(); ++k) {
+        // sparse enough to be told apart, those of the way out between those of the way in
+        const PullPoint& p = way[k];
+        if (p.overlap > 1.5 * tear_off || (k % 56 != (p.back ? 28 : 0) && !p.gone)) continue;
+        (p.back ? out.out_overlap : out.in_overlap).push_back(p.overlap / tear_off);
+        (p.back ? out.out_force : out.in_force).push_back(p.force / pull_off);
+    }
+    // the unstable branch below the tear-off radius too: what the contact would have to pass through
+    for (double a = 0.01 * jkr.tear_off_radius(); jkr.overlap(a) < 1.6 * tear_off; a *= 1.02) {
+        out.curve_overlap.push_back(jkr.overlap(a) / tear_off);
+        out.curve_force.push_back(jkr.force(a) / pull_off);
+    }
+    return out;
+}
+
+}  // namespace verification
 
 VerificationCases verify_jkr_curve(const VerificationOptions& options) {
     VerificationCases out;
@@ -239,15 +281,14 @@ VerificationCases verify_jkr_curve(const VerificationOptions& options) {
 
 VerificationCases verify_sticking_speed(const VerificationOptions& options) {
     VerificationCases out;
-    const Jkr jkr = curve_of(kRows[0]);
-    const double reduced_mass = 0.5 * sphere_mass(8000, 20e-6);
-    const double elastic = std::sqrt(2 * jkr.hysteresis_work() / reduced_mass);
+    const double elastic = elastic_sticking_speed();
+    const double dt = 5e-9;  // about 6000 steps in one oscillation of the bonded pair
     for (const double e : {1.0, 0.5}) {
         const double expected = e == 1 ? elastic : 4.428 * elastic;
         double lo = 0.5 * expected, hi = 2 * expected;
         for (int k = 0; k < 11; ++k) {
             const double middle = 0.5 * (lo + hi);
-            (sticks(options, e, middle) ? lo : hi) = middle;
+            (adhesive_rebound(options, e, middle, dt) == 0 ? lo : hi) = middle;
         }
         out.push_back(judged("V6", fmt::format("two grains of 40 um, scaled adhesion, e = {:g}", e),
                              "sticking speed [m/s]", expected, 0.5 * (lo + hi), expected, 0.01,

@@ -6,7 +6,8 @@
 #include <functional>
 
 #include "dem/random.h"
-#include "dem/verification/laboratory.h"
+#include "dem/spread.h"
+#include "dem/verification/curves.h"
 
 namespace gradwright {
 using namespace verification;
@@ -195,6 +196,52 @@ VerificationCases verify_energy(const VerificationOptions& options) {
     }
     return out;
 }
+
+namespace verification {
+
+StepErrors step_errors(const VerificationOptions& options) {
+    VerificationOptions exact = options;
+    exact.precision = Precision::double_law;
+    const double speed = 0.1;
+    const auto elastic = hertz_impact(effective_modulus(metal(), false), 0.5 * kRadius,
+                                      0.5 * sphere_mass(8000, kRadius), speed);
+    auto overlap_at = [&](double restitution, double start, long steps) {
+        return pair_after(exact, restitution, start, speed,
+                          0.7 * elastic.contact_time / static_cast<double>(steps), steps)
+            .overlap;
+    };
+    StepErrors out;
+    const double inside = 0.3 * elastic.overlap_max;
+    const double best[3] = {overlap_at(1, 0, 100000), overlap_at(0.5, inside, 100000),
+                            overlap_at(0.5, 0, 100000)};
+    for (long steps = 10; steps <= 2560; steps *= 2) {
+        out.steps.push_back(static_cast<double>(steps) / 0.7);
+        auto error = [&](double value, int k) { return std::fabs(value - best[k]) / elastic.overlap_max; };
+        out.elastic.push_back(error(overlap_at(1, 0, steps), 0));
+        out.damped_inside.push_back(error(overlap_at(0.5, inside, steps), 1));
+        out.damped_from_touch.push_back(error(overlap_at(0.5, 0, steps), 2));
+    }
+    return out;
+}
+
+double production_rebound(const VerificationOptions& options, double restitution, double speed,
+                          double phase) {
+    ImpactSetup s;
+    s.material = metal();
+    s.radius_1 = s.radius_2 = kRadius;
+    s.normal_speed = speed;
+    s.interaction.coefficient_of_restitution = restitution;
+    s.phase = phase;
+    const double shear = s.material.youngs_modulus / (2 * (1 + s.material.poissons_ratio));
+    const double dt = 0.2 * rayleigh_time_step(kRadius, s.material.density, shear, s.material.poissons_ratio);
+    s.steps_per_contact = hertz_impact(effective_modulus(metal(), false), 0.5 * kRadius,
+                                       0.5 * sphere_mass(8000, kRadius), speed)
+                              .contact_time /
+                          dt;
+    return run_impact(options, s).normal_speed;
+}
+
+}  // namespace verification
 
 VerificationCases verify_time_step_order(const VerificationOptions& options) {
     VerificationCases out;

@@ -15,9 +15,28 @@ const std::vector<VerificationRung>& verification_ladder() {
         {"V9", "forces are slopes of energies, and energy only falls", verify_energy},
         {"V10", "an isolated cluster keeps its momenta", verify_conservation},
         {"V11", "lists find every contact; threads change no bit", verify_neighbours},
+        {"V12", "a gas of smooth grains cools by Haff's law", verify_cooling},
         {"V13", "the time step has its order", verify_time_step_order},
+        {"V15", "walls obey the pair law, also at edges and in corners", verify_walls},
+        {"V16", "the work of the blade is dissipated or held", verify_balance},
     };
     return rungs;
+}
+
+const std::vector<Mutation>& mutations() {
+    static const std::vector<Mutation> all = {
+        {"damping", "no damping, normal or tangential", {.no_damping = true}, {"V2", "V4", "V6"}},
+        {"history",
+         "the tangential spring is forgotten in every step",
+         {.no_history = true},
+         {"V3", "V7", "V8", "V15"}},
+        {"pull_off", "half the pull-off force", {.half_pull_off = true}, {"V5", "V6", "V9"}},
+        {"lever_arm",
+         "one grain's lever arm is a tenth short",
+         {.wrong_lever_arm = true},
+         {"V3", "V7", "V10"}},
+    };
+    return all;
 }
 
 VerificationCases verify_all(const VerificationOptions& options) {

@@ -1,4 +1,5 @@
-// V7, V8: one grain on a rigid plane: sliding into rolling, rolling resistance.
+// V7, V8: one grain on a rigid plane: sliding into rolling, rolling resistance; V8 also on another grain and
+// in a heap of four.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,16 @@ namespace {
 constexpr double kGravity = 9.81, kRadius = 1e-3, kTimeStep = 2e-6;
 
 const char* name_of(RollingModel model) {
-    return model == RollingModel::spring ? "spring" : "constant torque";
+    switch (model) {
+        case RollingModel::none:
+            return "no resistance";
+        case RollingModel::spring:
+            return "spring";
+        case RollingModel::edem:
+            return "edem";
+        default:
+            return "constant torque";
+    }
 }
 
 /// A grain at rest on the plane z = 0, which is tilted so that x points down the slope. Stiff: overlap 2e-4
@@ -54,6 +64,97 @@ Interaction rough(double friction, double rolling, RollingModel model) {
     return i;
 }
 
+/// A grain turning on top of a like fixed one, without friction. Where two equal grains meet, R* = r/2: the
+/// edem model, with each grain's own arm, brakes twice as hard as the others.
+void add_grain_on_grain(VerificationCases& out, const VerificationOptions& options) {
+    const double mu_r = 0.1, time = 0.018;
+    for (const RollingModel model :
+         {RollingModel::constant_torque, RollingModel::edem, RollingModel::spring}) {
+        EngineOptions eo =
+            laboratory_options(options, GrainOnPlane::material(), rough(0, mu_r, model), kTimeStep);
+        eo.gravity = {0, 0, -kGravity};
+        Engine engine(eo);
+        engine.add_grain({.radius = kRadius, .fixed = true});
+        const double weight = sphere_mass(8000, kRadius) * kGravity;
+        const double overlap = std::pow(
+            0.75 * weight / (effective_modulus(GrainOnPlane::material(), false) * std::sqrt(0.5 * kRadius)),
+            2.0 / 3.0);
+        const int top = engine.add_grain({.z = 2 * kRadius - overlap, .wy = 100, .radius = kRadius});
+        engine.advance(std::lround(0.002 / kTimeStep));
+        const double before = engine.spin(index_of(engine, top))[1];
+        engine.advance(std::lround(time / kTimeStep));
+        const double arm = model == RollingModel::edem ? 1 : 0.5;
+        const double expected = 2.5 * arm * mu_r * kGravity * time / kRadius;
+        out.push_back(judged(
+            "V8", fmt::format("spin-down on a like grain, {}", name_of(model)), "spin lost in 18 ms [rad/s]",
+            expected, before - engine.spin(index_of(engine, top))[1], expected, 5e-3,
+            model == RollingModel::edem ? "5 mu_r g t/(2 r), arm r" : "5 mu_r g t/(4 r), R* = r/2"));
+    }
+}
+
+/// The smallest heap: three grains on a plane, touching, and one on top; theta = angle of the upper contacts
+/// from the vertical, sin theta = 1/sqrt(3). It gives way by sliding at the upper contacts while the lower
+/// grains roll outwards. Torques on a lower grain about its centre, forces on it and on the top grain:
+///   mu N + m_1 + m_2 = F,  F = N (sin - mu cos),  N_2 = 4/3 W,  3 N (cos + mu sin) = W,
+/// with m_1 = mu_r N/2 (R* = r/2; edem: mu_r N) at the upper contact and m_2 = mu_r N_2 at the plane, over r.
+/// So
+///   mu (1 + cos + 4 mu_r sin) = sin - mu_r (1/2 or 1) - 4 mu_r cos;  without resistance mu = tan(theta/2).
+double critical_friction(double mu_r, RollingModel model) {
+    const double s = 1 / std::sqrt(3.0), c = std::sqrt(2.0 / 3.0);
+    if (model == RollingModel::none) mu_r = 0;
+    const double upper = model == RollingModel::edem ? 1 : 0.5;
+    return (s - upper * mu_r - 4 * mu_r * c) / (1 + c + 4 * mu_r * s);
+}
+
+bool heap_stands(const VerificationOptions& options, double friction, double mu_r, RollingModel model) {
+    Interaction interaction = rough(friction, mu_r, model);
+    interaction.coefficient_of_restitution = 0.1;
+    EngineOptions eo = laboratory_options(options, GrainOnPlane::material(), interaction, kTimeStep);
+    eo.gravity = {0, 0, -kGravity};
+    Engine engine(eo);
+    const double weight = sphere_mass(8000, kRadius) * kGravity;
+    const double plane = std::pow(
+        0.75 * 4.0 / 3.0 * weight / (effective_modulus(GrainOnPlane::material(), true) * std::sqrt(kRadius)),
+        2.0 / 3.0);
+    for (int k = 0; k < 3; ++k) {
+        // a hair apart: nothing but the top grain joins them
+        const double angle = 2 * kPi * k / 3, distance = 2.0004 * kRadius / std::sqrt(3.0);
+        engine.add_grain({.x = distance * std::cos(angle),
+                          .y = distance * std::sin(angle),
+                          .z = kRadius - plane,
+                          .radius = kRadius});
+    }
+    const int top =
+        engine.add_grain({.z = kRadius - plane + 2 * kRadius * std::sqrt(2.0 / 3.0), .radius = kRadius});
+    Body floor;
+    floor.material = 1;
+    engine.add_body(floor);
+    const double start = engine.state().z[index_of(engine, top)];
+    for (int block = 0; block < 30; ++block) {
+        engine.advance(1000);
+        if (engine.state().z[index_of(engine, top)] < start - 0.05 * kRadius) return false;
+    }
+    return true;
+}
+
+void add_heap_of_four(VerificationCases& out, const VerificationOptions& options) {
+    const double mu_r = 0.02;
+    for (const RollingModel model :
+         {RollingModel::none, RollingModel::constant_torque, RollingModel::edem, RollingModel::spring}) {
+        const double expected = critical_friction(mu_r, model);
+        double falls = 0.8 * expected, stands = 1.25 * expected;
+        for (int k = 0; k < 7; ++k) {
+            const double middle = 0.5 * (falls + stands);
+            (heap_stands(options, middle, mu_r, model) ? stands : falls) = middle;
+        }
+        out.push_back(
+            judged("V8", fmt::format("heap of four, mu_r = 0.02, {}", name_of(model)),
+                   "least friction that holds it", expected, 0.5 * (falls + stands), expected, 0.02,
+                   "(sin - mu_r/2 - 4 mu_r cos)/(1 + cos + 4 mu_r sin), sin = 1/sqrt 3; edem: mu_r for "
+                   "mu_r/2; none: tan(theta/2)"));
+    }
+}
+
 }  // namespace
 
 VerificationCases verify_slide_to_roll(const VerificationOptions& options) {
@@ -82,7 +183,8 @@ VerificationCases verify_slide_to_roll(const VerificationOptions& options) {
 VerificationCases verify_rolling(const VerificationOptions& options) {
     VerificationCases out;
     const double mu_r = 0.1;
-    for (const RollingModel model : {RollingModel::constant_torque, RollingModel::spring}) {
+    for (const RollingModel model :
+         {RollingModel::constant_torque, RollingModel::edem, RollingModel::spring}) {
         {
             // From 2 ms on: before the spring yields, in its first steps, type C's dashpot acts above the cap
             // and takes 1 % of this spin.
@@ -119,15 +221,17 @@ VerificationCases verify_rolling(const VerificationOptions& options) {
         out.push_back(judged("V8", "rest on 4.5 degrees, spring", "way in the next 40 ms / radius", 0,
                              lab.engine.state().x[0] - x, kRadius, 1e-6, "rest if mu_r >= tan"));
     }
-    {
-        Interaction interaction = rough(0.64, mu_r, RollingModel::constant_torque);
+    for (const RollingModel model : {RollingModel::constant_torque, RollingModel::edem}) {
+        Interaction interaction = rough(0.64, mu_r, model);
         interaction.rolling_regularisation_speed = 1e-4;
         const double expected = 1e-4 * std::tan(slope * kPi / 180) / mu_r;
         GrainOnPlane lab(options, interaction, slope, 0, 0);
         lab.engine.advance(20000);
-        out.push_back(judged("V8", "creep on 4.5 degrees, constant torque", "speed [m/s]", expected,
-                             lab.speed(), expected, 5e-3, "regularisation speed x tan/mu_r"));
+        out.push_back(judged("V8", fmt::format("creep on 4.5 degrees, {}", name_of(model)), "speed [m/s]",
+                             expected, lab.speed(), expected, 5e-3, "regularisation speed x tan/mu_r"));
     }
+    add_grain_on_grain(out, options);
+    add_heap_of_four(out, options);
     return out;
 }
 

@@ -1,4 +1,4 @@
-// The verification ladder (physics.md 6): published impacts, closed forms and conservation laws, each run
+// The verification ladder: published impacts, closed forms and conservation laws, each run
 // through the engine's own stepping path. Part of the product: `gradwright verify` prints what the tests
 // assert. No test framework here.
 #pragma once
@@ -12,7 +12,7 @@ namespace gradwright {
 
 /// One claim of the ladder with its outcome.
 struct VerificationCase {
-    std::string id;        ///< rung: "V1" ... "V13"
+    std::string id;        ///< rung: "V1" ... "V16"
     std::string name;      ///< the case, with the numbers that set it apart
     std::string quantity;  ///< what is compared, with its unit
     double expected = 0, obtained = 0;
@@ -53,8 +53,15 @@ VerificationCases verify_energy(const VerificationOptions& options);
 VerificationCases verify_conservation(const VerificationOptions& options);
 /// V11: the neighbour list finds what a search over all pairs finds; the same bits on 1, 2, 3 and 8 threads.
 VerificationCases verify_neighbours(const VerificationOptions& options);
+/// V12: a gas of smooth inelastic grains, periodic in x, y and z, cools by Haff's law.
+VerificationCases verify_cooling(const VerificationOptions& options);
 /// V13: order of the time step.
 VerificationCases verify_time_step_order(const VerificationOptions& options);
+/// V15: a wall is the limit of a huge grain; edges and corners.
+VerificationCases verify_walls(const VerificationOptions& options);
+/// V16: energy of a pushed pile and of a whole spread: work of the blade = losses + change of what is held.
+/// The spread is run as users run it, so a fault in `options` reaches the piles only.
+VerificationCases verify_balance(const VerificationOptions& options);
 
 /// A rung by its name, for `verify --only V5`.
 struct VerificationRung {
@@ -62,6 +69,15 @@ struct VerificationRung {
     VerificationCases (*run)(const VerificationOptions&);
 };
 const std::vector<VerificationRung>& verification_ladder();
+
+/// A deliberate fault that the ladder must see, for `verify --mutate`.
+struct Mutation {
+    std::string name;  ///< "damping", "history", "pull_off", "lever_arm"
+    std::string fault_text;
+    LawFault fault;
+    std::vector<std::string> red;  ///< rungs that must turn red
+};
+const std::vector<Mutation>& mutations();
 
 /// All rungs in order.
 VerificationCases verify_all(const VerificationOptions& options);

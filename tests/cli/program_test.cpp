@@ -303,6 +303,58 @@ TEST_F(Program, evaluate_takes_the_design_of_a_result) {
     EXPECT_THAT(bad.err, HasSubstr("dosage_factor"));
 }
 
+TEST_F(Program, evaluate_gives_the_composition_when_asked_for) {
+    const Outcome outcome = run({"evaluate", kLinear, "--fidelity", "kinematic", "--composition",
+                                 "--melt-depth", "100 um", "--melt-width", "300 um", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json object = json::parse(outcome.out);
+    const json& composition = object["composition"];
+    EXPECT_EQ(composition["y_m"], object["profile"]["y_m"]);
+    for (std::size_t b = 0; b < composition["y_m"].size(); ++b) {
+        const double gi = object["profile"]["gi"][b];
+        const double mass = 7980 * gi / (7980 * gi + 8200 * (1 - gi));  // table 1 of the paper
+        const json &steel = composition["alloys"]["A"]["wt"], &nickel = composition["alloys"]["B"]["wt"];
+        EXPECT_NEAR(composition["wt_fe"][b].get<double>(),
+                    mass * steel["Fe"].get<double>() + (1 - mass) * nickel["Fe"].get<double>(), 1e-9);
+        EXPECT_NEAR(composition["wt_ni"][b].get<double>(),
+                    mass * steel["Ni"].get<double>() + (1 - mass) * nickel["Ni"].get<double>(), 1e-9);
+    }
+    EXPECT_NEAR(composition["melt"]["dilution"].get<double>(), 0.6, 1e-12);  // 40 um of 100 um are new
+    EXPECT_FALSE(json::parse(run({"evaluate", kLinear, "--fidelity", "kinematic", "--json"}).out)
+                     .contains("composition"));
+    EXPECT_THAT(run({"evaluate", kLinear, "--fidelity", "kinematic", "--composition"}).out,
+                HasSubstr("wt% Fe"));
+}
+
+TEST_F(Program, evaluate_refuses_melt_pools_and_figures_that_cannot_be) {
+    const std::vector<std::string> call = {"evaluate", kLinear, "--fidelity", "kinematic"};
+    const auto with = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all = call;
+        all.insert(all.end(), more.begin(), more.end());
+        return run(all);
+    };
+    EXPECT_EQ(with({"--melt-depth", "100 um"}).code, 2);
+    EXPECT_THAT(with({"--melt-depth", "100", "--melt-width", "120 um"}).err,
+                HasSubstr("between 1 um and 10 mm"));
+    EXPECT_THAT(with({"--melt-depth", "100 parsec", "--melt-width", "120 um"}).err, HasSubstr("parsec"));
+    EXPECT_THAT(with({"--melt-depth", "30 um", "--melt-width", "120 um"}).err, HasSubstr("would not bond"));
+    EXPECT_EQ(with({"--melt-depth", "1e-4", "--melt-width", "1.2e-4"}).code, 0);  // bare numbers are metres
+    const Outcome figures = with({"--figures"});
+    EXPECT_EQ(figures.code, 2);
+    EXPECT_THAT(figures.err, HasSubstr("--fidelity full"));
+    // a powder of one's own without a composition
+    const Outcome unknown = with(
+        {"--composition", "--set", "powder.B.material={density=\"8000 kg/m3\", youngs_modulus=\"200 GPa\"}"});
+    EXPECT_EQ(unknown.code, 3);
+    EXPECT_THAT(unknown.err, HasSubstr("composition"));
+    EXPECT_EQ(with({"--composition", "--set",
+                    "powder.B.material={density=\"8000 kg/m3\", youngs_modulus=\"200 GPa\", "
+                    "composition={wt={Cu=\"balance\", Cr=1.0}}}"})
+                  .code,
+              0);
+    EXPECT_TRUE(wrote_nothing());
+}
+
 TEST_F(Program, a_signal_ends_a_design_with_130_and_whole_files) {
     // The example packs for minutes: the signal always comes before the end.
     for (const char* signal : {"INT", "TERM"}) {

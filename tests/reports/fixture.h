@@ -117,7 +117,9 @@ inline Snapshot snapshot(const Study& s, const Design& design, bool after) {
                                                     jitter * (u(random) - 0.5)));
                 shot.radius.push_back(static_cast<float>(12.5e-6 + 14e-6 * u(random) * u(random)));
                 shot.is_a.push_back(a);
-                shot.speed.push_back(after ? 0.0f : 1e-4f);
+                shot.vx.push_back(after ? 0.0f : 1e-4f);
+                shot.vy.push_back(0.0f);
+                shot.vz.push_back(0.0f);
             }
     shot.time = after ? 0.11 : 0;
     shot.blade_x = after ? 11.6e-3 : -1e-3;

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""Writes the tables of docs/crosscheck.md from runs of the program. Usage, from the project's root:
+
+    python3 docs/make_crosscheck.py [forces] [beds] [skin]
+
+Results are kept in runs/crosscheck/, so that a second call only rewrites the page. `beds` takes some ten minutes on two free
+cores, `skin` as long again. Needs LAMMPS (Debian's package lammps) and nothing but Python's standard library.
+"""
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+RUNS = os.path.join(ROOT, "runs", "crosscheck")
+PAGE = os.path.join(ROOT, "docs", "crosscheck.md")
+STUDY = "examples/01_linear_coupon.toml"
+
+
+def crosscheck():
+    """The answer of the one long run; both tables are read from it."""
+    out = os.path.join(RUNS, "strip")
+    kept = os.path.join(out, "crosscheck.json")
+    if not os.path.exists(kept):
+        os.makedirs(RUNS, exist_ok=True)
+        command = ["./gradwright", "crosscheck", "lammps", STUDY, "--seeds", "3", "--force", "--json", "--out", out]
+        print("running:", " ".join(command), file=sys.stderr, flush=True)
+        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
+        if done.returncode not in (0, 4):
+            sys.exit(f"crosscheck ended with exit code {done.returncode}")
+    with open(kept) as file:
+        return json.load(file)
+
+
+def forces_table():
+    two = crosscheck()["two_body"]
+    rows = ["| compared | contacts | largest difference | relative to the |", "|---|---|---|---|"]
+    rows += [f"| {c['name']} | {c['contacts']} | {c['max_relative_error']:.1e} | {c['relative_to']} |" for c in two["cases"]]
+    rows += ["", f"Stretched bonds that LAMMPS still had after its next neighbour rebuild: {two['bonds_kept_after_a_rebuild_in_lammps']} of "
+             f"{two['bonds_stretched']}. Bonds stretched beyond {two['lammps_tear_off_share']:.2f} of the tear-off overlap that LAMMPS still "
+             f"held: {two['bonds_held_beyond_in_lammps']} of {two['bonds_beyond_lammps_tear_off']}."]
+    return rows
+
+
+def beds_table():
+    r = crosscheck()
+    ours, theirs = r["engines"]["gradwright"], r["engines"]["lammps"]
+
+    def row(name, a, b, form="{:.3f}"):
+        return f"| {name} | {form.format(a)} | {form.format(b)} |"
+
+    def both(name, key, scale=1, form="{:.3f}"):
+        value = r
+        for part in key.split("."):
+            value = value[part]
+        return row(name, scale * value["gradwright"], scale * value["lammps"], form)
+
+    rows = [f"| mean of {len(r['beds'])} beds | gradwright {ours['version']} | LAMMPS {theirs['version']} |", "|---|---|---|",
+            both("packing of the layer", "packing"), both("captured share of the dose", "capture_fraction"), both("coverage", "coverage"),
+            both("heap: length (95 % of the solid) mm", "heap.length_m", 1e3),
+            both("heap: centre of the solid ahead of the blade mm", "heap.centre_m", 1e3),
+            both("heap: section of solid mm2", "heap.solid_section_m2", 1e6, "{:.4f}"),
+            row("threads, ranks", ours["ranks_or_threads"], theirs["ranks_or_threads"], "{}"),
+            row("wall seconds, all spreads", ours["seconds"], theirs["seconds"], "{:.0f}"),
+            row("million grain-steps/s", ours["grain_steps_per_second"] / 1e6, theirs["grain_steps_per_second"] / 1e6, "{:.1f}")]
+    profile = r["profile"]
+    for y, weight, a, b in zip(profile["y_m"], profile["weight"], profile["gradwright"], profile["lammps"]):
+        if weight > 0:
+            rows.append(row(f"GI at y = {1e3 * y:.1f} mm", a, b))
+    rows += ["", f"GI of LAMMPS less GI of ours on the same bed: rms {r['gi_rmse']:.4f} (of the means {r['gi_rmse_of_means']:.4f}, bias "
+             f"{r['gi_bias']:+.4f}). One engine between two beds: rms {r['noise_rms']:.4f}. Ratio {r['gi_rmse'] / r['noise_rms']:.2f}; "
+             f"{r['noise_allowed']} is allowed. Wall seconds of LAMMPS over ours: {r['speed_ratio']:.1f}."]
+    rows += ["", "What was not the same in that run:", ""] + [f"- {d}" for d in r["differences"]]
+    return rows
+
+
+def skin_table():
+    """CPU seconds of LAMMPS for the first steps of a deck, by skin and by the interval of balancing: what a loaded machine
+    can still tell."""
+    crosscheck()
+    folder = os.path.join(RUNS, "strip", "bed-1")
+    with open(os.path.join(folder, "in.spread")) as file:
+        deck = file.read()
+    steps = 20000
+    with open(os.path.join(folder, "in.skin"), "w") as file:
+        file.write(deck[:deck.index("\nrun ")] + f"\nrun {steps}\n")
+    rows = [f"| skin um | CPU s for {steps} steps, one rank | neighbour lists built |", "|---|---|---|"]
+    for skin in (4, 6, 8, 12):
+        kept = os.path.join(RUNS, f"skin-{skin}.json")
+        if not os.path.exists(kept):
+            # the deck may have been made for more ranks
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            log = os.path.join(RUNS, f"skin-{skin}.log")
+            with open(os.path.join(folder, "in.skin")) as file:
+                text = re.sub(r"\nprocessors .*|\nfix even .*", "", file.read())
+            subprocess.run(["lmp", "-in", "/dev/stdin", "-log", log, "-nocite", "-var", "skin", f"{skin}e-6"], cwd=folder, check=True,
+                           input=text.encode(), stdout=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"})
+            used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+            with open(log) as file:
+                built = int(re.search(r"Neighbor list builds = (\d+)", file.read()).group(1))
+            with open(kept, "w") as file:
+                json.dump({"seconds": used, "built": built}, file)
+        with open(kept) as file:
+            r = json.load(file)
+        rows.append(f"| {skin} | {r['seconds']:.1f} | {r['built']} |")
+    return rows
+
+
+TABLES = {"forces": forces_table, "beds": beds_table, "skin": skin_table}
+
+
+def main():
+    wanted = sys.argv[1:] or list(TABLES)
+    for name in wanted:
+        if name not in TABLES:
+            sys.exit(f"there is no table '{name}': {', '.join(TABLES)}")
+        rows = TABLES[name]()
+        with open(PAGE) as file:
+            page = file.read()
+        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+        head, rest = page.split(begin)
+        with open(PAGE, "w") as file:
+            file.write(head + begin + "\n" + "\n".join(rows) + "\n" + end + rest.split(end)[1])
+
+
+if __name__ == "__main__":
+    main()
