@@ -36,11 +36,16 @@ void read_surface(const Engine& engine, const ReposeSetup& setup, double packing
     out.back_height = out.surface.front();
 }
 
-/// Least squares over the slope: from the back wall to `margin` before the edge, where more than `least` of
+/// Least squares over the slope alone: from where the surface falls below nine tenths of its height (a bed
+/// that drains only near the gate keeps a level back) to `margin` before the edge, where more than `least` of
 /// powder lies.
 void fit_slope(ReposeResult& out, double length, double margin, double least) {
-    std::vector<double> x, z;
+    const double top = *std::max_element(out.surface.begin(), out.surface.end());
+    std::size_t first = 0;
     for (std::size_t k = 0; k < out.x.size(); ++k)
+        if (out.surface[k] >= 0.9 * top) first = k + 1;
+    std::vector<double> x, z;
+    for (std::size_t k = first; k < out.x.size(); ++k)
         if (out.x[k] < length - margin && out.surface[k] > least) {
             x.push_back(out.x[k]);
             z.push_back(out.surface[k]);

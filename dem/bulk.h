@@ -34,9 +34,10 @@ struct ReposeResult {
 };
 
 /// Static angle of repose by draining: the bed packs against a gate, the gate vanishes, what crosses its line
-/// falls off the edge, the slope that stays is fitted by a line between 2 D50 from the edge and the back
-/// wall. The powder, law and numerics are the scene's; its machine is not used. Adhesive powder stands up to
-/// a height of about its Bond number in grain diameters, so the angle depends on `height`: both are results.
+/// falls off the edge; the slope that stays is fitted by a line below nine tenths of its height and up to 2
+/// D50 from the edge. The powder, law and numerics are the scene's; its machine is not used. Adhesive powder
+/// stands upright to a height that grows with its Bond number (then nothing is left to fit and the angle is
+/// NaN), so the angle depends on `height`: both are results.
 ReposeResult drain(const Scene& scene, const ReposeSetup& setup, const SpreadOptions& options);
 
 /// Layer quality along the platform: share of square cells of a fifth of a millimetre whose solid depth

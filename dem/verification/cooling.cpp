@@ -104,7 +104,7 @@ VerificationCases verify_cooling(const VerificationOptions& options) {
         for (std::size_t k = 1; k < curve.size(); ++k)
             out.push_back(judged(
                 "V12",
-                fmt::format("1000 smooth grains, 10 % solid, e = {:g}, t = {:g} tau", e, curve[k].time),
+                fmt::format("2744 smooth grains, 10 % solid, e = {:g}, t = {:g} tau", e, curve[k].time),
                 "temperature over the first", curve[k].expected, curve[k].temperature, curve[k].expected,
                 0.05, "1/(1 + t/tau)^2, Haff 1983"));
     }

@@ -12,7 +12,7 @@ struct CoolingPoint {
 };
 
 struct CoolingOptions {
-    int cells = 10;  ///< grains along each edge: cells^3 in all
+    int cells = 14;  ///< grains along each edge: cells^3 in all; the scatter of 1000 is 2 %
     double packing_fraction = 0.1, restitution = 0.8;
     double end = 1;  ///< [tau]
     int points = 8;

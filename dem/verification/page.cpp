@@ -180,7 +180,7 @@ std::string restitution_svg(const VerificationOptions& options, ProductionRange&
 
 std::string cooling_svg(const VerificationOptions& options) {
     Chart c;
-    c.title = "1000 smooth grains cool, 10 % solid";
+    c.title = "2744 smooth grains cool, 10 % solid";
     c.x_label = "time / tau";
     c.y_label = "temperature / first temperature";
     c.log_y = true;
