@@ -21,7 +21,8 @@
 // cases, not 95 %, so bands and bounds of misfits take Student's t (misfit.h). s itself is not widened: noise
 // floors and tests of equality need it unbiased. Checked on synthetic layers whose grains share origins in
 // patches (tests/dem/gradation_test.cpp): 150 um patches are covered; patches as long as the block leave s
-// about 15 % too small.
+// about 15 % too small. What a whole bed has in common no block of it can know; whoever quotes a single bed
+// allows for that (optimise/evaluation.h).
 #pragma once
 #include <vector>
 

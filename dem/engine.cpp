@@ -144,13 +144,6 @@ void Engine::scale_velocities(double factor) {
     kernel_->scale_motion(factor, factor);
 }
 
-void Engine::scale_spins(double factor) {
-    auto& s = state_;
-    for (std::size_t i = 0; i < s.size(); ++i)
-        for (auto* w : {&s.wx, &s.wy, &s.wz}) (*w)[i] *= factor;
-    kernel_->scale_motion(1, factor);
-}
-
 double Engine::max_speed() const {
     double top = 0;
     for (std::size_t i = 0; i < state_.size(); ++i) {

@@ -90,8 +90,6 @@ class Engine {
     void wake_all();
     /// Multiply every velocity and spin (a quench while packing).
     void scale_velocities(double factor);
-    /// Multiply every spin: ends twirls about single contacts, which no part of the law resists.
-    void scale_spins(double factor);
 
     /// Up to `steps` steps; fewer when something went wrong (see `failed`). Returns the number done.
     long advance(long steps);

@@ -22,16 +22,20 @@ struct Loops {
 
 Loops loops_of(const HeapField& field) {
     Loops sum;
-    const double half = 0.5 * field.cell;
     for (int k = 0; k + 1 < field.rows; ++k)
         for (int i = 0; i + 1 < field.columns; ++i) {
-            const std::size_t a = field.at(i, k), b = field.at(i + 1, k), c = field.at(i + 1, k + 1),
-                              d = field.at(i, k + 1);
-            const double loop = half * ((field.vx[a] + field.vx[b]) + (field.vz[b] + field.vz[c]) -
-                                        (field.vx[c] + field.vx[d]) - (field.vz[d] + field.vz[a]));
-            if (std::isnan(loop)) continue;  // a corner without powder
-            sum.circulation += loop;
-            sum.area += field.cell * field.cell;
+            const std::size_t corner[] = {field.at(i, k), field.at(i + 1, k), field.at(i + 1, k + 1),
+                                          field.at(i, k + 1)};
+            double circulation = 0, area = 0;
+            for (int n = 0; n < 4; ++n) {
+                const std::size_t p = corner[n], q = corner[(n + 1) % 4];
+                circulation += 0.5 * ((field.vx[p] + field.vx[q]) * (field.mean_x[q] - field.mean_x[p]) +
+                                      (field.vz[p] + field.vz[q]) * (field.mean_z[q] - field.mean_z[p]));
+                area += 0.5 * (field.mean_x[p] * field.mean_z[q] - field.mean_x[q] * field.mean_z[p]);
+            }
+            if (std::isnan(circulation)) continue;  // a corner without powder
+            sum.circulation += circulation;
+            sum.area += area;
         }
     return sum;
 }
@@ -67,8 +71,7 @@ HeapField heap_field(std::span<const Snapshot> instants, const HeapFieldOptions&
     field.rows = static_cast<int>((z_high - field.z_low) / field.cell) + 1;
     const std::size_t cells = static_cast<std::size_t>(field.columns) * field.rows;
     std::vector<double> volume(cells, 0), volume_a(cells, 0), grains(cells, 0);
-    field.vx.assign(cells, 0);
-    field.vz.assign(cells, 0);
+    for (auto* numbers : {&field.vx, &field.vz, &field.mean_x, &field.mean_z}) numbers->assign(cells, 0);
     for (const Snapshot& s : instants)
         for (std::size_t n = 0; n < s.x.size(); ++n) {
             const double x = s.x[n] - s.blade_x;
@@ -80,6 +83,8 @@ HeapField heap_field(std::span<const Snapshot> instants, const HeapFieldOptions&
             if (s.is_a[n]) volume_a[at] += v;
             field.vx[at] += v * s.vx[n];
             field.vz[at] += v * s.vz[n];
+            field.mean_x[at] += v * x;
+            field.mean_z[at] += v * s.z[n];
             ++grains[at];
         }
     const double room = field.cell * field.cell * field.width * field.instants;
@@ -89,12 +94,10 @@ HeapField heap_field(std::span<const Snapshot> instants, const HeapFieldOptions&
     int columns = 0, rows = 0;
     for (std::size_t at = 0; at < cells; ++at) {
         field.solid_fraction[at] = volume[at] / room;
-        if (grains[at] < least || field.solid_fraction[at] < options.least_solid) {
-            field.vx[at] = field.vz[at] = kNan;
-            continue;
-        }
-        field.vx[at] /= volume[at];
-        field.vz[at] /= volume[at];
+        const bool enough = grains[at] >= least && field.solid_fraction[at] >= options.least_solid;
+        for (auto* sums : {&field.vx, &field.vz, &field.mean_x, &field.mean_z})
+            (*sums)[at] = enough ? (*sums)[at] / volume[at] : kNan;
+        if (!enough) continue;
         field.gi[at] = volume_a[at] / volume[at];
         columns = std::max(columns, static_cast<int>(at % field.columns) + 1);
         rows = std::max(rows, static_cast<int>(at / field.columns) + 1);
@@ -103,15 +106,18 @@ HeapField heap_field(std::span<const Snapshot> instants, const HeapFieldOptions&
     HeapField cut = field;
     cut.columns = columns;
     cut.rows = rows;
-    for (auto* numbers : {&cut.vx, &cut.vz, &cut.gi, &cut.solid_fraction}) numbers->clear();
-    for (int k = 0; k < rows; ++k)
-        for (int i = 0; i < columns; ++i) {
-            const std::size_t at = field.at(i, k);
-            cut.vx.push_back(field.vx[at]);
-            cut.vz.push_back(field.vz[at]);
-            cut.gi.push_back(field.gi[at]);
-            cut.solid_fraction.push_back(field.solid_fraction[at]);
-        }
+    const auto cut_out = [&](const std::vector<double>& from, std::vector<double>& to) {
+        to.clear();
+        for (int k = 0; k < rows; ++k)
+            to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(field.at(0, k)),
+                      from.begin() + static_cast<std::ptrdiff_t>(field.at(0, k)) + columns);
+    };
+    cut_out(field.vx, cut.vx);
+    cut_out(field.vz, cut.vz);
+    cut_out(field.mean_x, cut.mean_x);
+    cut_out(field.mean_z, cut.mean_z);
+    cut_out(field.gi, cut.gi);
+    cut_out(field.solid_fraction, cut.solid_fraction);
     return cut;
 }
 

@@ -17,6 +17,7 @@ struct HeapField {
     int instants = 0;
     double blade_low = 0,
            blade_high = 0;               ///< the blade's face at the first and last instant, scene frame [m]
+    std::vector<double> mean_x, mean_z;  ///< centroid of the powder in a cell [m]; NaN as vx
     std::vector<double> vx, vz;          ///< [m/s], standing frame; NaN in cells with too few grains
     std::vector<double> solid_fraction;  ///< [-], 0 in empty cells
     std::vector<double> gi;              ///< volume share of A [-]; NaN as vx
@@ -39,9 +40,11 @@ struct HeapFieldOptions {
 HeapField heap_field(std::span<const Snapshot> instants, const HeapFieldOptions& options);
 
 /// Rotation of the heap: circulation = closed integral of v . dl around the powder, anticlockwise with x to
-/// the right and z up, which is the sum over all loops through four neighbouring, defined cell centres
-/// (Stokes); a uniform velocity adds nothing, so the standing frame and the blade's give the same. A heap
-/// that rolls ahead of the blade like a wheel towards +x turns clockwise: negative.
+/// the right and z up, as the sum over all loops through the powder's centroids in four neighbouring, defined
+/// cells (Stokes; trapezium rule along the sides, so exact for any linear field: through the cells' centres a
+/// wheel's rim, whose cells are partly filled, would count 3 % short). A uniform velocity adds nothing: the
+/// standing frame and the blade's give the same. A heap that rolls ahead of the blade like a wheel towards +x
+/// turns clockwise: negative.
 struct HeapRotation {
     double circulation = 0;  ///< [m2/s]
     double area = 0;         ///< of those loops [m2]; 0 = too little powder for any

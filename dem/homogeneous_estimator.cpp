@@ -78,7 +78,7 @@ class LabelShares {
 /// each layer.
 std::vector<BinMoments> moments_of(const PooledGrains& grains, const LabelShares& shares, const BinGrid& bins,
                                    double block) {
-    const bool by_layer = grains.layers >= 3;
+    const bool by_layer = grains.replicates();
     const int cuts = by_layer ? 1 : block_count(grains.x_low, grains.x_high, block);
     std::vector<BinMoments> moments(bins.count, BinMoments(grains.layers * cuts));
     std::vector<double> share(bins.count);
@@ -94,7 +94,7 @@ std::vector<BinMoments> moments_of(const PooledGrains& grains, const LabelShares
 }
 
 BlockTrend trend_of(const PooledGrains& grains) {
-    return grains.layers >= 3 ? BlockTrend::none : BlockTrend::linear;
+    return grains.replicates() ? BlockTrend::none : BlockTrend::linear;
 }
 
 /// Means of every bin without moments: the fast path of a search.
@@ -110,6 +110,14 @@ std::vector<double> means_of(const PooledGrains& grains, const LabelShares& shar
 }
 
 }  // namespace
+
+bool PooledGrains::replicates() const {
+    if (layers < 3) return false;
+    std::vector<double> of_layer(layers, 0.0);
+    for (std::size_t i = 0; i < size(); ++i) of_layer[layer[i]] += volume[i];
+    const auto [least, most] = std::minmax_element(of_layer.begin(), of_layer.end());
+    return *most < 2 * *least;
+}
 
 double PooledGrains::total_volume() const {
     return std::accumulate(volume.begin(), volume.end(), 0.0);

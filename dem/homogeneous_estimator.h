@@ -45,6 +45,9 @@ struct PooledGrains {
 
     std::size_t size() const { return volume.size(); }
     double total_volume() const;  ///< [m3]
+    /// Three beds or more of about the same size: the spread between them is the noise. A full-width layer
+    /// among strips is no replicate of them.
+    bool replicates() const;
 };
 /// Grains with deposit_x in [x_low, x_high).
 PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high);

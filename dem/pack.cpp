@@ -108,13 +108,14 @@ struct Settling {
     double weight = 0;
     double unit_speed() const { return std::sqrt(scene.gravity * scene.powder[0].size.d50); }
     double speed_number() const { return engine.max_speed() / unit_speed(); }
-    /// Of the bed as a whole: root mean square over the mobile grains.
-    double mean_speed_number() const {
+    /// Share of the mobile grains that are faster than a bed at rest allows; what is asleep stands still.
+    double moving_share() const {
         const State& s = engine.state();
-        double sum = 0;
-        for (std::size_t i = 0; i < s.size(); ++i)  // what is fixed or asleep stands still
-            sum += s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
-        return std::sqrt(sum / static_cast<double>(engine.mobile())) / unit_speed();
+        const double limit = 0.01 * unit_speed();
+        std::size_t moving = 0;
+        for (std::size_t i = 0; i < s.size(); ++i)
+            moving += s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i] > limit * limit;
+        return static_cast<double>(moving) / static_cast<double>(engine.mobile());
     }
     /// Upward force of floor and walls over the weight of the mobile grains.
     double carried() const {
@@ -131,9 +132,9 @@ struct Settling {
     /// Runs until accepted or `most` steps are spent. Grains at rest sleep meanwhile, so that the last
     /// rollers cost little; before a bed is accepted all are woken and must stand for 750 steps: speed number
     /// < 0.01, floor and walls carry the weight within 1 %. The law has no twisting resistance, so a grain
-    /// that hangs on one adhesive contact, and the grain it carries, can twirl for ever: once the bed as a
-    /// whole is quiet, spins are quartered from time to time, not so often that a grain could not topple in
-    /// between.
+    /// that hangs on one adhesive contact can twirl for ever, and swing the grains that hang on it: once
+    /// hardly any grain moves, all motion is quartered from time to time, not so often that a grain could not
+    /// topple in between.
     bool settle(long most, const char* stage) {
         weigh();
         engine.wake_all();
@@ -147,7 +148,7 @@ struct Settling {
             if (options.progress)
                 options.progress({stage, 0.99 * (1 - std::exp(-3 * done / static_cast<double>(most)))});
             if (speed_number() > 0.01) {
-                if (++bursts % 20 == 0 && mean_speed_number() < 0.01) engine.scale_spins(0.25);
+                if (++bursts % 20 == 0 && moving_share() < 0.01) engine.scale_velocities(0.25);
                 continue;
             }
             engine.wake_all();
@@ -338,10 +339,7 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     auto relabel = [&] {
         // Where both powders share sizes, a grain belongs to the side on which it came to rest; else it keeps
         // its powder.
-        const auto &a = scene.powder[0].size, &b = scene.powder[1].size;
-        const bool same = a.d10 == b.d10 && a.d50 == b.d50 && a.d90 == b.d90 && a.cut_low == b.cut_low &&
-                          a.cut_high == b.cut_high;
-        if (!partition || !same) return false;
+        if (!partition || !(scene.powder[0].size == scene.powder[1].size)) return false;
         auto& s = engine.state();
         bool changed = false;
         for (std::size_t i = 0; i < s.size(); ++i) {

@@ -14,6 +14,8 @@ struct SizeDistribution {
     double cut_low = 15e-6;   ///< smallest diameter kept [m]
     double cut_high = 80e-6;  ///< largest diameter kept [m]
 
+    bool operator==(const SizeDistribution&) const = default;
+
     double sigma() const;  ///< log-normal width [-]
     /// Diameter below which the volume share p (0..1) lies, after the cut [m].
     double volume_quantile(double p) const;

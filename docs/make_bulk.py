@@ -100,7 +100,7 @@ def gi():
 def along(r, gap):
     """Packing along x: mass of the map's columns over density, gap and plan area."""
     x = r["map"]["x_m"]
-    cell, width = x[1] - x[0], 0.3e-3
+    cell, width = x[1] - x[0], 1.6e-3  # the map answers for the full width
     columns = [sum(row[k] or 0 for row in r["map"]["mass_kg"]) for k in range(len(x))]
     return [m / 7980 / (gap * cell * width) for m in columns]
 

@@ -251,6 +251,11 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
             result.evaluations += polish(problem, family, options, candidate.p);
             candidate.keep_best(problem.hard_objective(family, candidate.p));
         }
+        Design finalist = design;
+        finalist.family = space.family;
+        finalist.partition = family.curve(candidate.best);
+        finalist.parameters = family.named(candidate.best);
+        result.finalists.push_back(std::move(finalist));
         if (candidate.objective < result.objective) {
             result.objective = candidate.objective;
             result.p = candidate.best;

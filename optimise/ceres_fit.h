@@ -69,6 +69,9 @@ struct FitResult {
     double misfit = 0, drift = 0;
     double start_objective = 0;  ///< of the closed form
     int starts = 0, evaluations = 0;
+    /// The designs of all starts that were followed to the end, `design` among them: on a noisy map several
+    /// are as good, and who can tell their noise chooses.
+    std::vector<Design> finalists;
 };
 
 /// Best partition of `space` on the map. A space that is not free returns `design` as it is, without numbers.

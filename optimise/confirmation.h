@@ -16,6 +16,7 @@ struct ConfirmedDesign {
     /// variance.
     std::vector<double> expected, expected_variance, expected_drift, expected_drift_variance;
     std::vector<Evaluation> confirmations;  ///< those with numbers
+    std::vector<Layer> layers;              ///< of those
     GradationProfile mean;
     XDrift drift;
     Misfit misfit, drift_misfit;

@@ -28,6 +28,7 @@ Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
         const Footprint footprint = footprint_of(study_, design);
         evaluation.profile = plain_profile(layer, label, footprint, study_.bins, seed);
         evaluation.drift = plain_drift(layer, label, footprint, study_.bins, seed);
+        allow_for_beds(evaluation, kBedsOverBlocksPlain);
         evaluation.map = gradation_map(
             layer, label, {study_.scene.powder[0].material.density, study_.scene.powder[1].material.density},
             study_.bins.width, study_.dispenser_width);
@@ -43,7 +44,8 @@ Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
     }
     judge(study_, evaluation);
     // An interrupted run is not finished: a resumed one starts it again.
-    if (journal_ && evaluation.health.status != "interrupted") journal_->append(evaluation);
+    if (journal_ && evaluation.health.status != "interrupted")
+        journal_->append(evaluation, evaluation.health.ok() ? std::vector<Layer>{layer} : std::vector<Layer>{});
     return evaluation;
 }
 

@@ -70,6 +70,12 @@ std::vector<double> bin_targets(const Study& study) {
     return target;
 }
 
+void allow_for_beds(Evaluation& evaluation, double variance_ratio) {
+    for (auto* errors : {&evaluation.profile.standard_error, &evaluation.drift.standard_error})
+        for (double& s : *errors) s *= std::sqrt(variance_ratio);
+    evaluation.drift.noise_floor *= std::sqrt(variance_ratio);
+}
+
 void judge(const Study& study, Evaluation& evaluation) {
     const Objective& objective = study.objective;
     evaluation.target = bin_targets(study);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/homogeneous_estimator.h"
+
 namespace gradwright {
 namespace {
 
@@ -48,6 +50,30 @@ MapEvaluator::MapEvaluator(const Study& study, SpreadRunner& runner, Journal* jo
 MapEvaluator::Key MapEvaluator::key_of(const Design& design, std::uint64_t seed) const {
     return {design.dosage_factor, design.land, design.fill_fraction[0], design.fill_fraction[1],
             double(seed)};
+}
+
+void OriginMap::average() {
+    capture_fraction = packing_fraction = waste_fraction = bed_packing = 0;
+    const double n = double(layers.size());
+    for (const Layer& layer : layers) {
+        capture_fraction += layer.capture_fraction() / n;
+        packing_fraction += layer.packing_fraction() / n;
+        bed_packing += layer.bed_packing / n;
+        if (layer.dosed_solid_volume > 0)
+            waste_fraction += layer.overflow_solid_volume / layer.dosed_solid_volume / n;
+    }
+}
+
+bool moves_alike(const Study& study) {
+    const auto& [a, b] = study.scene.powder;
+    constexpr double kLikeDensity = 0.05;  // inverse-design.md, When a map holds
+    return a.size == b.size && std::fabs(a.material.density / b.material.density - 1) <= kLikeDensity;
+}
+
+void MapEvaluator::learn(const Design& design, const Layer& layer) {
+    OriginMap& map = map_of(design);
+    map.layers.push_back(layer);
+    map.average();
 }
 
 OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
@@ -93,14 +119,7 @@ OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
     if (design.fill_fraction[0] != design.fill_fraction[1])
         map.health.warnings.push_back(
             "the map was spread with level chambers: unequal fills are only in the confirmation");
-    const double n = double(map.layers.size());
-    for (const Layer& layer : map.layers) {
-        map.capture_fraction += layer.capture_fraction() / n;
-        map.packing_fraction += layer.packing_fraction() / n;
-        map.bed_packing += layer.bed_packing / n;
-        if (layer.dosed_solid_volume > 0)
-            map.waste_fraction += layer.overflow_solid_volume / layer.dosed_solid_volume / n;
-    }
+    map.average();
     // The spread is what costs: kept before anything is made of it.
     if (journal_ && map.health.status != "interrupted") {
         journal_->append(with(design, map, false), map.layers);
@@ -113,6 +132,10 @@ Evaluation MapEvaluator::evaluate(const Design& design, std::uint64_t seed) {
     Evaluation evaluation = with(design, map_of(design, seed), true);
     if (journal_ && evaluation.health.status != "interrupted") journal_->append(evaluation);
     return evaluation;
+}
+
+Evaluation MapEvaluator::quoted(const Design& design) {
+    return with(design, map_of(design), true);
 }
 
 Evaluation MapEvaluator::quick(const Design& design) {
@@ -162,10 +185,10 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         HomogeneousOptions options;
         options.resamples = quoted ? kResamples : 0;
         options.seed = map.seed;
-        evaluation.profile = homogeneous_profile(map.layers, design.partition, footprint.x_low,
-                                                 footprint.x_high, study_.bins, options);
-        evaluation.drift = homogeneous_drift(map.layers, design.partition, footprint.x_low, footprint.x_high,
-                                             study_.bins, options);
+        const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high);
+        evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
+        evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
+        if (!grains.replicates()) allow_for_beds(evaluation, kBedsOverBlocksMap);
         Footprint in_strip = footprint;
         in_strip.y_low = 0;
         for (const Layer& layer : map.layers) {
@@ -180,6 +203,7 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
                                                  study_.scene.powder[1].material.density};
             evaluation.map = gradation_map(whole, label, density, study_.bins.width, study_.dispenser_width);
             evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
+            for (double& s : evaluation.plain_check.standard_error) s *= std::sqrt(kBedsOverBlocksPlain);
         }
     }
     judge(study_, evaluation);

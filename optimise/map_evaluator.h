@@ -23,6 +23,8 @@ struct OriginMap {
     long grains = 0, steps = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;
     std::string state_hash;
+    /// Sets the means from the layers.
+    void average();
     bool told = false;  ///< its spreads and their time have been handed out with an evaluation
 };
 
@@ -36,10 +38,15 @@ class MapEvaluator : public Evaluator {
     /// map seeds.
     Evaluation evaluate(const Design& design, std::uint64_t seed) override;
     Fidelity fidelity() const override { return Fidelity::map; }
+    /// The same, not kept: for choosing between designs.
+    Evaluation quoted(const Design& design);
     /// Hard-label misfits and objective only, in milliseconds: for searches.
     Evaluation quick(const Design& design);
     /// Runs the strips when these motion variables are new. The reference stays valid.
     OriginMap& map_of(const Design& design, std::uint64_t seed = 0);
+    /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
+    /// `design`: its origins are as good as the strips'.
+    void learn(const Design& design, const Layer& layer);
 
   private:
     using Key = std::array<double, 5>;
@@ -53,6 +60,10 @@ class MapEvaluator : public Evaluator {
     Journal* journal_;
     std::map<Key, OriginMap> maps_;
 };
+
+/// Do A and B move alike, so that a label moves nothing and a spread with both is a map as good as one
+/// without labels? Same sizes, densities within 5 %.
+bool moves_alike(const Study& study);
 
 /// Periodic strip laid side by side until it fills `width`: y-homogeneity as a picture, and for plain bins
 /// [m].

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "optimise/bounded_search.h"
 #include "optimise/ceres_fit.h"
@@ -111,14 +112,18 @@ class MapStrategy {
         }
         predicted_ = run_.map.evaluate(design, 0);
         fit_message_ = predicted_.health.reason;
-        run_.record(correction.active ? "correct" : "map", predicted_,
-                    correction.active ? "aimed at the corrected target" : "best partition on the map");
+        const bool learned = int(run_.map.map_of(motion_).layers.size()) > study_.map_spreads;
+        run_.record(correction.active || learned ? "correct" : "map", predicted_,
+                    correction.active ? "aimed at the corrected target"
+                    : learned         ? "best partition on the map with the confirmations' origins in it"
+                                      : "best partition on the map");
         return predicted_.health.ok();
     }
 
-    /// Least squares with the study's drift weight; where misfit or drift then come near their tolerance, the
-    /// weight is tried smaller and larger and the design furthest inside both tolerances is taken: the
-    /// verdict needs both, the weight is only a guess at that.
+    /// Least squares with the study's drift weight, and with a smaller and a larger one where misfit or drift
+    /// come near their tolerance: the verdict needs both, the weight is only a guess at that. Of all that was
+    /// found, the design is taken whose upper 95 % bounds lie furthest inside both tolerances: of two equal
+    /// fits the one with less noise, which a partition that snakes through the dispenser has not.
     FitResult best_fit(const DesignSpace& space, const Correction& correction, FitOptions options) {
         options.seed = study_.seed;
         options.stop = [this] { return run_.runner.stopped(); };
@@ -133,15 +138,42 @@ class MapStrategy {
                             fit.drift / study_.objective.x_drift_tolerance);
         };
         constexpr double kComfortable = 0.7;  // of a tolerance: leaves room for the spread between beds
+        options.finalists = 6;
         FitResult best = fit_partition(study_, space, motion_, problem, options);
-        if (!best.ok || study_.objective.x_drift_weight <= 0 || distance(best) < kComfortable) return best;
-        options.perturbed_starts = 2;  // the landscape is known by now
-        for (const double factor : {0.25, 4.0}) {
-            problem.x_drift_weight = factor * study_.objective.x_drift_weight;
-            const FitResult other = fit_partition(study_, space, motion_, problem, options);
-            if (other.ok && distance(other) < distance(best)) best = other;
+        if (!best.ok) return best;
+        std::vector<Design> found = best.finalists;
+        if (study_.objective.x_drift_weight > 0 && distance(best) >= kComfortable) {
+            options.perturbed_starts = 2;  // the landscape is known by now
+            for (const double factor : {0.25, 4.0}) {
+                problem.x_drift_weight = factor * study_.objective.x_drift_weight;
+                const FitResult other = fit_partition(study_, space, motion_, problem, options);
+                found.insert(found.end(), other.finalists.begin(), other.finalists.end());
+            }
+        }
+        double least = std::numeric_limits<double>::infinity();
+        for (const Design& design : found) {
+            const double bound = upper_bound(run_.map.quoted(design), correction);
+            if (bound < least) {
+                least = bound;
+                best.design = design;
+            }
         }
         return best;
+    }
+
+    /// Larger of misfit and drift, each by its upper 95 % bound over its tolerance, of what a design is expected
+    /// to be when spread: the map's answer plus the correction in force. Infinite without numbers.
+    double upper_bound(Evaluation expected, const Correction& correction) const {
+        if (!expected.health.ok()) return std::numeric_limits<double>::infinity();
+        if (correction.active) {
+            for (std::size_t b = 0; b < correction.profile.size(); ++b) {
+                expected.profile.gi[b] += correction.profile[b];
+                expected.drift.difference[b] += correction.drift[b];
+            }
+            judge(study_, expected);
+        }
+        return std::max(expected.misfit.interval_high / study_.objective.tolerance,
+                        expected.drift_misfit.interval_high / study_.objective.x_drift_tolerance);
     }
 
     /// Outer search over the variables that need a new spread; leaves the best in motion_, footprint placed.
@@ -259,9 +291,16 @@ class MapStrategy {
         run_.result.kinematic = kinematic.evaluate(predicted_.design, 0);
     }
 
-    /// Manifold mapping: aim the map at target - (confirmed - map), so that map + discrepancy meets the
-    /// target.
+    /// The next design after a spread that contradicted the map. Powders that move alike: the difference is
+    /// the beds' chance, and the full spread's origins go into the map, four strips' worth of them on the
+    /// coupon. Else manifold mapping: aim the map at target - (confirmed - map), so that map + discrepancy
+    /// meets the target; on like powders that would build half of one bed's chance into the partition.
     ConfirmedDesign correct(const ConfirmedDesign& round, bool profile, bool drift) {
+        if (moves_alike(study_) && motion_.fill_fraction[0] == motion_.fill_fraction[1] &&
+            round.layers.front().periodic) {
+            for (const Layer& layer : round.layers) run_.map.learn(motion_, layer);
+            return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};
+        }
         const std::vector<double>& weight = run_.result.weight;
         if (!correction_.active) {
             correction_.profile.assign(weight.size(), 0.0);

@@ -106,6 +106,7 @@ bool StrategyRun::confirm(ConfirmedDesign& round) {
     if (result.snapshots.empty()) result.snapshots = full.last().snapshots;
     result.beds.push_back(full.last().bed);
     round.confirmations.push_back(evaluation);
+    round.layers.push_back(full.last().layer);
     summarise(study, round);
     return true;
 }

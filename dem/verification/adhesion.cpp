@@ -251,10 +251,13 @@ JkrLoop jkr_loop(const VerificationOptions& options) {
     const double tear_off = std::fabs(jkr.tear_off_overlap()), pull_off = jkr.pull_off();
     JkrLoop out;
     const auto way = pull_contact(options, kRows[0], 400);
-    for (std::size_t k = 0; k < way.size(); ++k) {
+    long bin_before = 0;
+    for (const PullPoint& p : way) {
         // sparse enough to be told apart, those of the way out between those of the way in
-        const PullPoint& p = way[k];
-        if (p.overlap > 1.5 * tear_off || (k % 56 != (p.back ? 28 : 0) && !p.gone)) continue;
+        const long bin = std::lround(std::floor(p.overlap / tear_off / 0.14 + (p.back ? 0.5 : 0)));
+        const bool skip = bin == bin_before || p.overlap > 1.5 * tear_off;
+        bin_before = bin;
+        if (skip && !p.gone) continue;
         (p.back ? out.out_overlap : out.in_overlap).push_back(p.overlap / tear_off);
         (p.back ? out.out_force : out.in_force).push_back(p.force / pull_off);
     }

@@ -99,8 +99,9 @@ using namespace verification;
 
 VerificationCases verify_cooling(const VerificationOptions& options) {
     VerificationCases out;
-    for (const double e : {0.8, 0.9}) {
-        const auto curve = cool(options, {.restitution = e, .points = 4});
+    // At e = 0.8 vortices slow the cooling from half a tau on; at e = 0.9 this box is too small for them.
+    for (const auto& [e, end] : {std::pair{0.8, 0.5}, {0.9, 1.0}}) {
+        const auto curve = cool(options, {.restitution = e, .end = end, .points = 4});
         for (std::size_t k = 1; k < curve.size(); ++k)
             out.push_back(judged(
                 "V12",

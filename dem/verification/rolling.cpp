@@ -130,10 +130,11 @@ bool heap_stands(const VerificationOptions& options, double friction, double mu_
     floor.material = 1;
     engine.add_body(floor);
     const double start = engine.state().z[index_of(engine, top)];
+    // Settling takes 0.0004 radii, the rolling spring some 0.005 before it yields. Half a per cent short of
+    // the least friction, 0.02 radii take 50 ms.
     for (int block = 0; block < 30; ++block) {
         engine.advance(1000);
-        if (engine.state().z[index_of(engine, top)] < start - 0.005 * kRadius)
-            return false;  // settling: 0.0004
+        if (engine.state().z[index_of(engine, top)] < start - 0.02 * kRadius) return false;
     }
     return true;
 }

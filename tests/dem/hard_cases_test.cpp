@@ -26,8 +26,6 @@ TEST_P(HardCases, ends_as_it_must) {
     SpreadOptions options;
     options.threads = 1;
     options.cache_folder = folder();
-    if (hard_cases()[GetParam()].id == "size-ratio-10")
-        GTEST_SKIP() << "open fault: a bed of 7 to 70 um does not come to rest (speed number 0.9)";
     const HardCase c = run_hard_case(hard_cases()[GetParam()], options);
     EXPECT_TRUE(c.pass) << c.tried << "\n  must: " << c.expected << "\n  happened: " << c.happened;
     EXPECT_FALSE(c.happened.empty());

@@ -108,14 +108,6 @@ Evaluation made_evaluation(const Study& study, const Design& design, const Sprea
 
 const CompositionRequest kMelt{MeltPool{100e-6, 0.3e-3, 40e-6}};
 
-TEST(SpreadFigures, vorticity_of_a_rigid_rotation) {
-    GTEST_SKIP() << "open fault: -778 1/s where -800 +- 20 is right, of unknown cause";
-    const Study study = straight_study();
-    const Design design = straight_design(study);
-    const SpreadFigures figures = spread_figures(study, design, made_spread(study, design), kMelt);
-    EXPECT_NEAR(figures.rotation.vorticity, -2 * kRoll, 0.05 * kRoll);
-}
-
 TEST(SpreadFigures, the_line_the_rotation_and_the_mixing_of_a_made_spread_are_found) {
     const Study study = straight_study();
     const Design design = straight_design(study);
@@ -130,9 +122,10 @@ TEST(SpreadFigures, the_line_the_rotation_and_the_mixing_of_a_made_spread_are_fo
     EXPECT_GT(line.r_squared, 0.95);
     // melting leaves the slope of a ramp that goes on beyond the window
     EXPECT_NEAR(figures.fits[2].line.slope, figures.fits[1].line.slope, 0.1 * figures.fits[1].line.slope);
-    // rigid rotation: vorticity -2 w, one turn in 2 pi U / w
-    EXPECT_NEAR(figures.rotation.turn_length(0.1), 2 * std::numbers::pi * 0.1 / kRoll,
-                0.05 * 2 * std::numbers::pi * 0.1 / kRoll);
+    // rigid rotation: vorticity -2 w, one turn in 2 pi U / w; 1e-3 leaves room for positions kept as floats
+    EXPECT_NEAR(figures.rotation.vorticity, -2 * kRoll, 1e-3 * kRoll);
+    const double circumference = 2 * std::numbers::pi * 0.1 / kRoll;
+    EXPECT_NEAR(figures.rotation.turn_length(0.1), circumference, 1e-3 * circumference);
     // labels drawn by y alone: mixed within slices, not over the whole heap
     ASSERT_FALSE(figures.mixing.empty());
     for (const HeapMixing& row : figures.mixing) {
