@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/origin-map.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_origin_map.py [turnover] [evidence]
+    python3 docs/make_origin_map.py [turnover] [evidence] [beds]
 
 Results are kept in runs/origin-map/, so that a second call only rewrites the page. Needs nothing but Python's standard library.
 """
@@ -85,12 +85,39 @@ def evidence_table():
     return "\n".join(rows)
 
 
+def beds_table():
+    """Standard errors of single strips against what lies between ten of them."""
+    beds = [program(["evaluate", STUDY, "--fidelity", "map", "--set", "run.map_spreads=1", "--seed", str(seed)], f"bed-{seed}")
+            for seed in range(11, 21)]
+    weight = beds[0]["profile"]["weight"]
+    counting = [b for b, w in enumerate(weight) if w]
+
+    def row(label, values, errors, ratio):
+        n, between, told = len(values), 0, 0
+        for b in counting:
+            mean = sum(v[b] for v in values) / n
+            between += sum((v[b] - mean) ** 2 for v in values) / (n - 1)
+            told += sum(e[b] ** 2 for e in errors) / n
+        between, told = (between / len(counting)) ** 0.5, (told / len(counting)) ** 0.5
+        return f"| {label} | {between:.3f} | {told / ratio ** 0.5:.3f} | {(between / told) ** 2 * ratio:.2f} | {ratio} | {told:.3f} |"
+
+    return "\n".join([
+        "| rms over the bins that count | sd between 10 beds | error told by the blocks of one bed | ratio of the variances | allowed for | error quoted |",
+        "|---|---|---|---|---|---|",
+        row("GI, all grains of a strip for every y", [b["profile"]["gi"] for b in beds],
+            [b["profile"]["standard_error"] for b in beds], 2.0),
+        row("its x drift", [b["x_drift"]["profile"]["difference"] for b in beds],
+            [b["x_drift"]["profile"]["standard_error"] for b in beds], 2.0),
+        row("GI, bins of their own grains", [b["plain_bins"]["gi"] for b in beds],
+            [b["plain_bins"]["standard_error"] for b in beds], 1.5)])
+
+
 def main():
-    wanted = sys.argv[1:] or ["turnover", "evidence"]
+    wanted = sys.argv[1:] or ["turnover", "evidence", "beds"]
     page = os.path.join(ROOT, "docs", "origin-map.md")
     with open(page) as file:
         text = file.read()
-    for name, table in (("turnover", turnover_table), ("evidence", evidence_table)):
+    for name, table in (("turnover", turnover_table), ("evidence", evidence_table), ("beds", beds_table)):
         if name not in wanted:
             continue
         begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"

@@ -102,6 +102,7 @@ TEST(MapStrategy, drift_beyond_its_tolerance_is_not_met_though_the_profile_is_pe
 
 TEST(MapStrategy, noise_above_the_tolerance_stays_undecided_and_spends_the_budget) {
     Study study = coupon();
+    study.seed = 2;
     Heap heap;
     heap.grains_per_m2 /= 12;
     const Outcome got = run(study, heap);
@@ -133,6 +134,7 @@ TEST(MapStrategy, a_spread_that_differs_from_the_map_is_corrected_until_it_meets
 TEST(MapStrategy, like_powders_that_differ_from_the_map_put_their_origins_into_it) {
     Study study = coupon();
     study.max_spreads = 5;
+    study.scene.sides = Sides::periodic;
     Heap heap;
     heap.full_shift = -0.12;
     const StudyResult result = run(study, heap).result;
