@@ -4,6 +4,7 @@
 #include <hdf5.h>
 
 #include "reports/build_facts.h"
+#include "reports/source_state.h"
 
 namespace gradwright {
 

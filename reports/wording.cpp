@@ -195,9 +195,6 @@ Wording wording(const Study& study, const StudyResult& result) {
             percent(result.coverage), result.supply_ratio);
     words.warnings = study.warnings;
     words.warnings.insert(words.warnings.end(), result.warnings.begin(), result.warnings.end());
-    for (const Evaluation& evaluation : result.confirmations)
-        words.warnings.insert(words.warnings.end(), evaluation.health.warnings.begin(),
-                              evaluation.health.warnings.end());
     const double drift = proved ? result.confirmed_drift.value : result.predicted.drift.value;
     if (measured && drift > 0.1)  // physics.md 5: above 0.1 it stands on the first screen
         words.warnings.push_back(

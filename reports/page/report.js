@@ -86,7 +86,7 @@
     h("div", { class: "w12 tiles" },
       tile(norm_name, gi(result.misfit.value), interval(result.misfit), gauge(result.misfit, norm_name)),
       tile("x drift", gi(result.x_drift.value), interval(result.x_drift), gauge(result.x_drift, "x drift")),
-      tile("Powder laid", percent(result.capture_fraction), `of the dosed solid; ${percent(result.waste_fraction)} overflows, ${percent(result.waste_a_share)} of that is A; supply ratio ${known(result.supply_ratio) ? result.supply_ratio.toFixed(2) : "–"}`),
+      tile("Powder laid", percent(result.capture_fraction), `of the dosed solid; ${percent(result.waste_fraction)} overflows, ${percent(result.waste_a_share)} of that is A${result.capture_fraction + result.waste_fraction > 1 ? " (more than the dose in all: the blade also drags grains from below its edge)" : ""}; supply ratio ${known(result.supply_ratio) ? result.supply_ratio.toFixed(2) : "–"}`),
       tile("Coverage", percent(result.coverage), `of the part's cells; layer packing ${known(result.packing_fraction) ? result.packing_fraction.toFixed(2) : "–"}`),
       tile("Spent", duration(result.seconds), `${result.spreads.map} map strip${result.spreads.map === 1 ? "" : "s"} and ${result.spreads.full} full spread${result.spreads.full === 1 ? "" : "s"}; ${duration(result.seconds_cold)} with an empty cache`)),
     h("div", { class: "card w7" }, h("h3", {}, "What to build"),
