@@ -17,8 +17,8 @@ constexpr double kFar = 1.0;  // depth of the solid bodies [m]: anything beyond 
 // A grain that meets the dispenser's rim below the edge, or the edge itself, is pinched between blade and
 // rim, whatever the stiffness (friction 0.64 locks the wedge). The blade's lip presses it with a limited
 // force: that at an overlap of 0.6 % r and a softening of 1e-4, about a thousand grain weights, so that the
-// grains it is pressed against keep within the 3 % rule. The force is the blade's and stays when the grains are made stiffer. It is not what empties a short bed
-// under a fast blade: docs/bulk.md.
+// grains it is pressed against keep within the 3 % rule. The force is the blade's and stays when the grains
+// are made stiffer. It is not what empties a short bed under a fast blade: docs/bulk.md.
 constexpr double kBladeYield = 0.006, kYieldSoftening = 1e-4;
 
 double volume_of(double r) {

@@ -45,7 +45,8 @@ Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
     judge(study_, evaluation);
     // An interrupted run is not finished: a resumed one starts it again.
     if (journal_ && evaluation.health.status != "interrupted")
-        journal_->append(evaluation, evaluation.health.ok() ? std::vector<Layer>{layer} : std::vector<Layer>{});
+        journal_->append(evaluation,
+                         evaluation.health.ok() ? std::vector<Layer>{layer} : std::vector<Layer>{});
     return evaluation;
 }
 

@@ -61,8 +61,8 @@ std::vector<double> bin_targets(const Study& study);
 
 /// The grains of one bed share more than its blocks can tell: how this bed as a whole happened to turn over.
 /// Widens standard errors of profile and drift that were taken from blocks of single beds by the square root
-/// of `variance_ratio`: variance between ten beds of the coupon over the variance the blocks gave, for maps of
-/// strips and for plain bins (docs/origin-map.md, "One bed's noise").
+/// of `variance_ratio`: variance between ten beds of the coupon over the variance the blocks gave, for maps
+/// of strips and for plain bins (docs/origin-map.md, "One bed's noise").
 constexpr double kBedsOverBlocksMap = 2.0, kBedsOverBlocksPlain = 1.5;
 void allow_for_beds(Evaluation& evaluation, double variance_ratio);
 

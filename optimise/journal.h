@@ -15,7 +15,8 @@ struct JournalEntry {
     int number = 0;  ///< from 1
     std::string file;
     Evaluation evaluation;
-    std::vector<Layer> layers;  ///< with origins: the strips of a new set of motion variables, a full spread's own
+    std::vector<Layer>
+        layers;  ///< with origins: the strips of a new set of motion variables, a full spread's own
 };
 
 class Journal {

@@ -161,8 +161,8 @@ class MapStrategy {
         return best;
     }
 
-    /// Larger of misfit and drift, each by its upper 95 % bound over its tolerance, of what a design is expected
-    /// to be when spread: the map's answer plus the correction in force. Infinite without numbers.
+    /// Larger of misfit and drift, each by its upper 95 % bound over its tolerance, of what a design is
+    /// expected to be when spread: the map's answer plus the correction in force. Infinite without numbers.
     double upper_bound(Evaluation expected, const Correction& correction) const {
         if (!expected.health.ok()) return std::numeric_limits<double>::infinity();
         if (correction.active) {
