@@ -42,7 +42,7 @@ TEST(StabilityEdge, of_the_papers_law_in_a_dense_heap_is_above_twice_the_default
     EXPECT_LT(edge.unstable, 1);  // the search can find one
 }
 
-/// The paper's powder without fines, drained for 30 ms from a box of some 800 grains.
+/// The paper's powder without fines, drained for 60 ms from a box of some 800 grains.
 ReposeResult drained(double friction, double rolling, double work_of_adhesion) {
     Scene scene;
     scene.powder[0].material = {"A", 7980, 210e9, 0.3, ""};
@@ -55,7 +55,7 @@ ReposeResult drained(double friction, double rolling, double work_of_adhesion) {
     scene.interaction.rolling_model = RollingModel::spring;
     SpreadOptions options;
     options.threads = 1;
-    return drain(scene, {.length = 0.6e-3, .width = 0.26e-3, .height = 0.26e-3, .longest = 0.03}, options);
+    return drain(scene, {.length = 0.6e-3, .width = 0.26e-3, .height = 0.26e-3, .longest = 0.06}, options);
 }
 
 TEST(Repose, rough_grains_stay_smooth_ones_run_out_and_adhesive_ones_stand) {
