@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "targets/misfit.h"
+
 namespace gradwright {
 namespace {
 
@@ -75,6 +77,10 @@ const BandedProfile& Composition::wt(const std::string& element) const {
     for (const ElementProfile& profile : elements)
         if (profile.element == element) return profile.wt;
     throw std::out_of_range("no element " + element);
+}
+
+double band_factor(const GradationProfile& profile) {
+    return simultaneous_band(profile.gi, profile.standard_error, profile.degrees).factor;
 }
 
 Composition powder_composition(const GradationProfile& profile, const std::array<Material, 2>& alloys,

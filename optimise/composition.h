@@ -62,7 +62,10 @@ struct Composition {
     const BandedProfile& wt(const std::string& element) const;
 };
 
-/// Powder as laid. `factor`: half width of the band in standard errors of the GI (simultaneous_quantile); the
+/// Half width of the simultaneous 95 % band of a profile's GI in standard errors, over its defined bins.
+double band_factor(const GradationProfile& profile);
+
+/// Powder as laid. `factor`: half width of the band in standard errors of the GI (band_factor); the
 /// band of GI, clipped to [0, 1], is carried through the two formulas, both monotone. Throws
 /// std::invalid_argument naming the material without a composition.
 Composition powder_composition(const GradationProfile& profile, const std::array<Material, 2>& alloys,

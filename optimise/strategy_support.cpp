@@ -183,20 +183,10 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
         return std::move(result);
     }
 
-    std::vector<double> counting = round.mean.standard_error;
-    for (std::size_t b = 0; b < counting.size(); ++b)
-        if (!(result.weight[b] > 0))
-            counting[b] = 0;  // the band holds over the bins that the verdict is about
-    const double factor = simultaneous_factor(counting, 0.95, round.mean.degrees);
-    for (std::size_t b = 0; b < round.mean.gi.size(); ++b) {
-        const double half = factor * round.mean.standard_error[b];
-        // NaN in an empty bin stays NaN: std::clamp would do so too, but only by the order of its arguments
-        const bool defined = std::isfinite(round.mean.gi[b]) && std::isfinite(half);
-        result.band_low.push_back(defined ? std::max(0.0, round.mean.gi[b] - half)
-                                          : std::numeric_limits<double>::quiet_NaN());
-        result.band_high.push_back(defined ? std::min(1.0, round.mean.gi[b] + half)
-                                           : std::numeric_limits<double>::quiet_NaN());
-    }
+    Band band =  // over the bins that the verdict is about
+        simultaneous_band(round.mean.gi, round.mean.standard_error, round.mean.degrees, result.weight);
+    result.band_low = std::move(band.low);
+    result.band_high = std::move(band.high);
 
     const std::string numbers =
         fmt::format("misfit {}, x drift {}, on {} unseen bed{}", with_interval(round.misfit),

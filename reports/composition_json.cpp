@@ -85,21 +85,15 @@ std::array<Material, 2> alloys_of(const Study& study) {
     return {study.scene.powder[0].material, study.scene.powder[1].material};
 }
 
-double band_factor(const Evaluation& evaluation) {
-    const std::vector<double>& gi = evaluation.profile.gi;
-    return simultaneous_quantile(static_cast<int>(
-        std::count_if(gi.begin(), gi.end(), [](double value) { return std::isfinite(value); })));
-}
-
 }  // namespace
 
 json composition_json(const Study& study, const Evaluation& evaluation, const std::optional<MeltPool>& pool) {
-    return composition_json(evaluation.profile, alloys_of(study), band_factor(evaluation), pool);
+    return composition_json(evaluation.profile, alloys_of(study), band_factor(evaluation.profile), pool);
 }
 
 std::string composition_text(const Study& study, const Evaluation& evaluation,
                              const std::optional<MeltPool>& pool) {
-    const double factor = band_factor(evaluation);
+    const double factor = band_factor(evaluation.profile);
     const Composition powder = powder_composition(evaluation.profile, alloys_of(study), factor);
     std::optional<Composition> melted;
     if (pool) melted = melted_composition(evaluation.profile, alloys_of(study), factor, *pool);

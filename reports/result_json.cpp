@@ -148,16 +148,6 @@ json beds_json(const StudyResult& result) {
 
 }  // namespace
 
-double simultaneous_quantile(int bins) {
-    const double tail = 0.025 / std::max(1, bins);
-    double low = 0, high = 12;  // Phi(-12) = 2e-33: no number of bins comes near
-    for (int i = 0; i < 80; ++i) {
-        const double middle = (low + high) / 2;
-        (0.5 * std::erfc(middle / std::sqrt(2.0)) > tail ? low : high) = middle;
-    }
-    return (low + high) / 2;
-}
-
 json misfit_json(const Misfit& misfit) {
     return {{"norm", to_string(misfit.norm)},
             {"value", number(misfit.value)},
@@ -265,18 +255,10 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
 json evaluation_json(const Study& study, const Evaluation& evaluation,
                      const std::vector<std::string>& files) {
     const GradationProfile& profile = evaluation.profile;
-    const int defined = static_cast<int>(
-        std::count_if(profile.gi.begin(), profile.gi.end(), [](double gi) { return std::isfinite(gi); }));
-    const double z = simultaneous_quantile(defined);
-    json low = json::array(), high = json::array(), target = json::array();
-    for (std::size_t b = 0; b < profile.gi.size(); ++b) {
-        const double error = at(profile.standard_error, b);
-        // clamping must not turn an undefined error into a number: std::max(0, NaN) is 0
-        const bool known = std::isfinite(profile.gi[b]) && std::isfinite(error);
-        low.push_back(known ? number(std::max(0.0, profile.gi[b] - z * error)) : json(nullptr));
-        high.push_back(known ? number(std::min(1.0, profile.gi[b] + z * error)) : json(nullptr));
+    const Band band = simultaneous_band(profile.gi, profile.standard_error, profile.degrees);
+    json target = json::array();
+    for (std::size_t b = 0; b < profile.gi.size(); ++b)
         target.push_back(number(std::isfinite(profile.gi[b]) ? at(evaluation.target, b) : kUndefined));
-    }
     json drift = misfit_json(evaluation.drift_misfit);
     drift["value"] = number(evaluation.drift.value);
     drift["noise_floor"] = number(evaluation.drift.noise_floor);
@@ -292,8 +274,8 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
     object["study"] = study.name;
     object["profile"] = {{"y_m", numbers(profile.y_m)},
                          {"gi", numbers(profile.gi)},
-                         {"band_low", low},
-                         {"band_high", high},
+                         {"band_low", numbers(band.low)},
+                         {"band_high", numbers(band.high)},
                          {"standard_error", numbers(profile.standard_error)},
                          {"target", target},
                          {"weight", numbers(evaluation.weight)},

@@ -25,8 +25,4 @@ nlohmann::json design_json(const Study& study, const Design& design);
 nlohmann::json misfit_json(const Misfit& misfit);
 nlohmann::json inputs_json(const Study& study);
 
-/// Critical value z of a simultaneous 95 % band over `bins` bins (Bonferroni): Phi(z) = 1 - 0.025/bins.
-/// `bins` >= 1.
-double simultaneous_quantile(int bins);
-
 }  // namespace gradwright

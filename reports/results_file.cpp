@@ -171,13 +171,9 @@ void write_evaluations(Table& table, H5Writer& file, const StudyResult& result, 
                    s = padded(evaluation->profile.standard_error, bins);
         append(profile, gi);
         append(error, s);
-        const double z = simultaneous_quantile(
-            static_cast<int>(std::count_if(gi.begin(), gi.end(), [](double g) { return std::isfinite(g); })));
-        for (std::size_t b = 0; b < bins; ++b) {
-            const bool known = std::isfinite(gi[b]) && std::isfinite(s[b]);
-            low.push_back(known ? std::max(0.0, gi[b] - z * s[b]) : kUndefined);
-            high.push_back(known ? std::min(1.0, gi[b] + z * s[b]) : kUndefined);
-        }
+        const Band band = simultaneous_band(gi, s, evaluation->profile.degrees);
+        append(low, band.low);
+        append(high, band.high);
         append(drift, padded(evaluation->drift.difference, bins));
         append(drift_error, padded(evaluation->drift.standard_error, bins));
     }

@@ -108,17 +108,15 @@ std::string gi_line_svg(const Study& study, const Evaluation& evaluation, const 
     Axes axes(figure, left, top, width, height, {0, y_end}, {-0.05, 1.05});
     axes.frame("y (mm)", "GI by volume", true);
     const GradationProfile& bins = evaluation.profile;
-    const auto finite = [](double value) { return std::isfinite(value); };
-    const double z =
-        simultaneous_quantile(static_cast<int>(std::count_if(bins.gi.begin(), bins.gi.end(), finite)));
+    const Band band = simultaneous_band(bins.gi, bins.standard_error, bins.degrees);
     std::vector<double> step_y, step_low, step_high, step_gi;
     const double half_bin = study.bins.width / 2;
     for (std::size_t b = 0; b < bins.gi.size(); ++b)
         for (const double side : {-1.0, 1.0}) {
             step_y.push_back((bins.y_m[b] + side * half_bin) * 1e3);
             step_gi.push_back(bins.gi[b]);
-            step_low.push_back(std::max(-0.05, bins.gi[b] - z * bins.standard_error[b]));
-            step_high.push_back(std::min(1.05, bins.gi[b] + z * bins.standard_error[b]));
+            step_low.push_back(band.low[b]);
+            step_high.push_back(band.high[b]);
         }
     axes.band(step_y, step_low, step_high, kColourA, 0.15);
     axes.curve(step_y, step_gi, {.colour = kColourA, .width = 1.4});

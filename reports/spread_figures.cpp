@@ -32,11 +32,6 @@ std::vector<double> within(const std::vector<double>& y, const std::vector<doubl
     return kept;
 }
 
-int defined(const std::vector<double>& values) {
-    return static_cast<int>(
-        std::count_if(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
-}
-
 void measure_line(const Study& study, const Design& design, const Layer& layer,
                   const std::optional<CompositionRequest>& composition, SpreadFigures& out) {
     const std::vector<PlanPoint> inside =
@@ -55,7 +50,7 @@ void measure_line(const Study& study, const Design& design, const Layer& layer,
     out.fine = plain_profile(layer, carried_labels(layer), footprint_of(study, design), grid, study.seed);
     const std::array<Material, 2> alloys = {study.scene.powder[0].material, study.scene.powder[1].material};
     if (composition) {
-        const double factor = simultaneous_quantile(defined(out.fine.gi));
+        const double factor = band_factor(out.fine);
         out.powder = powder_composition(out.fine, alloys, factor);
         if (composition->pool) out.melted = melted_composition(out.fine, alloys, factor, *composition->pool);
     }
@@ -229,8 +224,8 @@ json figures_json(const Study& study, const SpreadFigures& figures,
     if (composition && figures.powder) {
         const std::array<Material, 2> alloys = {study.scene.powder[0].material,
                                                 study.scene.powder[1].material};
-        object["composition"] = composition_json(
-            figures.fine, alloys, simultaneous_quantile(defined(figures.fine.gi)), composition->pool);
+        object["composition"] =
+            composition_json(figures.fine, alloys, band_factor(figures.fine), composition->pool);
     }
     return object;
 }

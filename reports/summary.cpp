@@ -127,16 +127,8 @@ std::string evaluation_summary_text(const Study& study, const Evaluation& evalua
                                    evaluation.health.reason.empty() ? "" : ": " + evaluation.health.reason);
     if (!evaluation.health.ok()) return text;
     const GradationProfile& profile = evaluation.profile;
-    const auto z = simultaneous_quantile(static_cast<int>(
-        std::count_if(profile.gi.begin(), profile.gi.end(), [](double gi) { return std::isfinite(gi); })));
-    std::vector<double> low, high;
-    for (std::size_t b = 0; b < profile.gi.size(); ++b) {
-        const double half = z * at(profile.standard_error, b);
-        const bool known = std::isfinite(profile.gi[b]) && std::isfinite(half);
-        low.push_back(known ? std::max(0.0, profile.gi[b] - half) : std::nan(""));
-        high.push_back(known ? std::min(1.0, profile.gi[b] + half) : std::nan(""));
-    }
-    text += profile_table(profile, evaluation.target, nullptr, low, high, "GI");
+    const Band band = simultaneous_band(profile.gi, profile.standard_error, profile.degrees);
+    text += profile_table(profile, evaluation.target, nullptr, band.low, band.high, "GI");
     text += fmt::format(
         "  misfit {:.3f} (floor {:.3f}), x drift {:.3f} (floor {:.3f}), captured {:.0f} %, supply ratio "
         "{:.2f}, coverage {:.0f} %\n",

@@ -325,4 +325,22 @@ double simultaneous_factor(std::span<const double> standard_error, double level,
     return student_point(0.5 + 0.5 * each, degrees);
 }
 
+Band simultaneous_band(std::span<const double> gi, std::span<const double> standard_error, double degrees,
+                       std::span<const double> weight) {
+    std::vector<double> counting(standard_error.begin(), standard_error.end());
+    for (std::size_t b = 0; b < counting.size(); ++b)
+        if (!std::isfinite(gi[b]) || (!weight.empty() && !(weight[b] > 0))) counting[b] = 0;
+    Band band;
+    band.factor = simultaneous_factor(counting, 0.95, degrees);
+    for (std::size_t b = 0; b < gi.size(); ++b) {
+        const double half = b < standard_error.size() ? band.factor * standard_error[b]
+                                                      : std::numeric_limits<double>::quiet_NaN();
+        // clamping must not turn an undefined error into a number: std::max(0, NaN) is 0
+        const bool known = std::isfinite(gi[b]) && std::isfinite(half);
+        band.low.push_back(known ? std::max(0.0, gi[b] - half) : std::numeric_limits<double>::quiet_NaN());
+        band.high.push_back(known ? std::min(1.0, gi[b] + half) : std::numeric_limits<double>::quiet_NaN());
+    }
+    return band;
+}
+
 }  // namespace gradwright

@@ -55,4 +55,14 @@ double equality_p_value(std::span<const double> a, std::span<const double> b,
 /// the normal), n = bins with a standard error > 0 (1.96 for one bin, 2.77 for 9, many degrees).
 double simultaneous_factor(std::span<const double> standard_error, double level = 0.95, double degrees = 0);
 
+struct Band {
+    double factor = 0;              ///< half width in standard errors [-]
+    std::vector<double> low, high;  ///< GI in [0, 1]; NaN in a bin without a value or without an error
+};
+
+/// Simultaneous 95 % band of a profile over all its bins with a value and an error. `weight`, where given:
+/// the band holds over the bins of weight > 0; the others are drawn with the same factor.
+Band simultaneous_band(std::span<const double> gi, std::span<const double> standard_error, double degrees,
+                       std::span<const double> weight = {});
+
 }  // namespace gradwright

@@ -189,11 +189,16 @@ TEST(ResultJson, lengths_are_in_metres) {
     EXPECT_DOUBLE_EQ(object["profile"]["y_m"][0].get<double>(), study.bins.centre(0));
 }
 
-TEST(ResultJson, simultaneous_quantile_matches_the_normal_tail) {
-    for (int bins : {1, 8, 100}) {
-        const double z = simultaneous_quantile(bins);
-        EXPECT_NEAR(std::erfc(z / std::sqrt(2.0)), 0.05 / bins, 1e-12);  // two-sided tail, shared by the bins
-    }
+TEST(ResultJson, bands_of_one_spread_know_how_few_blocks_are_behind_them) {
+    const Study study = fixture::study();
+    Evaluation evaluation = fixture::result(study).confirmations.front();
+    const auto width = [&](double degrees) {
+        evaluation.profile.degrees = degrees;
+        const json profile = evaluation_json(study, evaluation)["profile"];
+        const std::size_t b = profile["gi"].size() / 2;
+        return profile["band_high"][b].get<double>() - profile["band_low"][b].get<double>();
+    };
+    EXPECT_GT(width(3), 1.2 * width(0));
 }
 
 }  // namespace

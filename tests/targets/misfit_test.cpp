@@ -338,5 +338,17 @@ TEST(band, holds_all_bins_at_once_with_its_level) {
     EXPECT_NEAR(inside / static_cast<double>(n), 0.95, 0.012);
 }
 
+TEST(band, of_a_profile_stays_a_gradation_index_and_leaves_unknown_bins_unknown) {
+    const std::vector<double> gi = {0.01, 0.5, kNan, 0.6, 0.7}, error = {0.02, 0.02, 0.02, kNan, 0.02};
+    const Band band = simultaneous_band(gi, error, 0);
+    EXPECT_NEAR(band.factor, 2.387738, 1e-5);  // Sidak, three bins
+    EXPECT_EQ(band.low[0], 0);
+    EXPECT_NEAR(band.high[1], 0.5 + 0.02 * band.factor, 1e-12);
+    EXPECT_TRUE(std::isnan(band.low[2]) && std::isnan(band.high[2]) && std::isnan(band.low[3]));
+    const Band judged = simultaneous_band(gi, error, 0, std::vector<double>{0, 1, 1, 1, 0});
+    EXPECT_NEAR(judged.factor, 1.959964, 1e-5);
+    EXPECT_NEAR(judged.high[4], 0.7 + 0.02 * judged.factor, 1e-12);
+}
+
 }  // namespace
 }  // namespace gradwright
