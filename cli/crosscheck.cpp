@@ -21,7 +21,7 @@ struct CrosscheckCommand {
     std::string engine, study;
     int ranks = 0;  ///< 0 = as many as threads
     int seeds = 3;
-    bool study_law = false, full_width = false;
+    bool study_law = false, full_width = false, rigid_blade = false;
 };
 
 double mean_of(const CrosscheckEngine& engine, double (*value)(const CrosscheckRun&)) {
@@ -161,6 +161,7 @@ nlohmann::json crosscheck_json(const Crosscheck& result, const CrosscheckOptions
             {"beds", beds},
             {"law", options.study_law ? "study" : "common"},
             {"scene", options.full_width ? "full width, both powders" : "narrow strip, relabelled"},
+            {"lammps_blade", options.rigid_blade ? "rigid" : "soft"},
             {"differences", result.differences},
             {"forces_agree", result.forces_agree},
             {"gradation_agrees", result.gradation_agrees},
@@ -234,6 +235,7 @@ ExitCode run_crosscheck_command(const CrosscheckCommand& command, const CommonOp
     options.ranks = command.ranks > 0 ? command.ranks : options.threads;
     options.study_law = command.study_law;
     options.full_width = command.full_width;
+    options.rigid_blade = command.rigid_blade;
     find_lammps(options.ranks);  // before a folder is made for nothing
     options.folder = make_out_folder(common, study.name);
     ProgressLine progress(common.quiet);
@@ -282,6 +284,10 @@ void add_crosscheck(CLI::App& app, Call& call) {
         "Ours with the study's own rolling and adhesive walls; default: the law nearest to LAMMPS's");
     verb->add_flag("--full-width", command->full_width,
                    "Both powders over the whole width; default: the study's narrow strip, relabelled");
+    verb->add_flag(
+        "--rigid-blade", command->rigid_blade,
+        "LAMMPS's blade as hard as the other walls: it shoots the grains that it pinches; default: so "
+        "soft that it does the work of our yielding one");
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);
     add_run_options(*verb, call.options);

@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-double volume_of(double r) {
-    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
-}
-
 /// Height of the powder in bins along x: solid in the bin over the bed's packing and the bin's plan area.
 void read_surface(const Engine& engine, const ReposeSetup& setup, double packing, double bin,
                   ReposeResult& out) {
@@ -27,7 +23,7 @@ void read_surface(const Engine& engine, const ReposeSetup& setup, double packing
     const State& s = engine.state();
     for (std::size_t i = 0; i < s.size(); ++i)
         if (!s.fixed[i] && s.x[i] >= 0 && s.x[i] < setup.length)
-            solid[std::min(bins - 1, static_cast<int>(s.x[i] / width))] += volume_of(s.radius[i]);
+            solid[std::min(bins - 1, static_cast<int>(s.x[i] / width))] += sphere_volume(s.radius[i]);
     for (int k = 0; k < bins; ++k) {
         out.x.push_back((k + 0.5) * width);
         out.surface.push_back(solid[k] / (packing * width * setup.width));
@@ -107,9 +103,9 @@ ReposeResult drain(const Scene& scene, const ReposeSetup& setup, const SpreadOpt
     out.grains = static_cast<long>(kept.x.size());
     const double d = s.powder[0].size.number_quantile(0.5);
     out.bond_number = 1.5 * std::numbers::pi * 0.25 * d * engine.work_of_adhesion() /
-                      (s.powder[0].material.density * volume_of(0.5 * d) * s.gravity);
+                      (s.powder[0].material.density * sphere_volume(0.5 * d) * s.gravity);
     double solid = 0;
-    for (const double r : kept.radius) solid += volume_of(r);
+    for (const double r : kept.radius) solid += sphere_volume(r);
 
     // Quiet: mean kinetic energy per grain below 1e-4 m g d, seen twice a fall over one grain apart.
     const double quiet = 1e-4 * s.powder[0].material.density * s.powder[0].size.mean_grain_volume() *
@@ -138,7 +134,7 @@ ReposeResult drain(const Scene& scene, const ReposeSetup& setup, const SpreadOpt
     double left = 0;
     for (std::size_t i = 0; i < state.size(); ++i)
         if (!state.fixed[i] && state.x[i] < setup.length) {
-            left += volume_of(state.radius[i]);
+            left += sphere_volume(state.radius[i]);
             ++out.left;
         }
     out.left_fraction = solid > 0 ? left / solid : 0;

@@ -19,11 +19,11 @@ Engine::Kernel::Predicted Engine::KernelOf<T>::predicted(std::size_t i) const {
 }
 
 template <class T>
-void Engine::KernelOf<T>::scale_motion(double velocity, double spin) {
-    const S v = static_cast<S>(velocity), w = static_cast<S>(spin);
+void Engine::KernelOf<T>::scale_motion(double factor) {
+    const S f = static_cast<S>(factor);
     for (Motion& m : motion) {
-        m.vx *= v, m.vy *= v, m.vz *= v;
-        m.wx *= w, m.wy *= w, m.wz *= w;
+        m.vx *= f, m.vy *= f, m.vz *= f;
+        m.wx *= f, m.wy *= f, m.wz *= f;
     }
 }
 

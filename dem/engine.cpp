@@ -141,7 +141,7 @@ void Engine::scale_velocities(double factor) {
     auto& s = state_;
     for (std::size_t i = 0; i < s.size(); ++i)
         for (auto* v : {&s.vx, &s.vy, &s.vz, &s.wx, &s.wy, &s.wz}) (*v)[i] *= factor;
-    kernel_->scale_motion(factor, factor);
+    kernel_->scale_motion(factor);
 }
 
 double Engine::max_speed() const {

@@ -154,7 +154,7 @@ void few_grains(const SpreadOptions& options, HardCase& out) {
         const std::size_t i = order[k];
         few.x.push_back(stage.bed.x[i]), few.y.push_back(stage.bed.y[i]), few.z.push_back(stage.bed.z[i]);
         few.radius.push_back(stage.bed.radius[i]), few.material.push_back(stage.bed.material[i]);
-        stage.dosed_solid_volume += 4.0 / 3.0 * std::numbers::pi * std::pow(stage.bed.radius[i], 3);
+        stage.dosed_solid_volume += sphere_volume(stage.bed.radius[i]);
     }
     stage.bed = few;
     const SpreadResult r = spread_stage(scene, stage, options);
@@ -235,7 +235,7 @@ void strong_adhesion(const SpreadOptions& options, HardCase& out) {
     Scene s = small_scene();
     s.adhesion_scaling = AdhesionScaling::none;
     // Bo = 3/2 pi R* Gamma/(m g) = 1000 for D50 = 40 um against its like: R* = 10 um
-    const double r = 20e-6, mass = s.powder[0].material.density * 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    const double r = 20e-6, mass = s.powder[0].material.density * sphere_volume(r);
     s.interaction.work_of_adhesion = 1000 * mass * s.gravity / (1.5 * std::numbers::pi * 0.5 * r);
     must_end(s, options, {"ok", "does_not_flow"}, out);
 }
@@ -257,7 +257,7 @@ void grain_in_the_nip(const SpreadOptions& options, HardCase& out) {
     const BedFacts facts = stage.bed.facts;
     const double r = 0.6 * scene.gap;
     stage.bed = Bed{{platform_start(scene) + 0.3e-3}, {0.5 * scene.width}, {r - scene.gap}, {r}, {0}, facts};
-    stage.dosed_solid_volume = 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    stage.dosed_solid_volume = sphere_volume(r);
     const SpreadResult result = spread_stage(scene, stage, options);
     out.happened =
         fmt::format("{}{}; {} grain pinched by more than 5 % of its radius, {} laid", result.health.status,

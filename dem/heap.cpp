@@ -6,14 +6,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/size_distribution.h"
+
 namespace gradwright {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double volume_of(double r) {
-    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
-}
 
 /// Sum over the loops through four neighbouring cell centres, anticlockwise.
 struct Loops {
@@ -78,7 +76,7 @@ HeapField heap_field(std::span<const Snapshot> instants, const HeapFieldOptions&
             if (!(x > 0) || s.z[n] < field.z_low) continue;
             const std::size_t at = field.at(static_cast<int>(x / field.cell),
                                             static_cast<int>((s.z[n] - field.z_low) / field.cell));
-            const double v = volume_of(s.radius[n]);
+            const double v = sphere_volume(s.radius[n]);
             volume[at] += v;
             if (s.is_a[n]) volume_a[at] += v;
             field.vx[at] += v * s.vx[n];
@@ -216,7 +214,7 @@ HeapMixing heap_mixing(const Snapshot& s, const HeapMixingOptions& options) {
         const int b = std::clamp(static_cast<int>(std::floor(y / options.cell)), 0, slices - 1);
         const std::size_t cell = static_cast<std::size_t>(s.z[n] / options.cell) * columns +
                                  static_cast<std::size_t>((s.x[n] - s.blade_x) / options.cell);
-        const double volume = volume_of(s.radius[n]), share = s.is_a[n] ? 1 : 0;
+        const double volume = sphere_volume(s.radius[n]), share = s.is_a[n] ? 1 : 0;
         cubes.add(cell * slices + b, volume, share);
         slice[b].add(cell, volume, share);
     }

@@ -15,7 +15,7 @@ struct Engine::Kernel {
     };
     virtual ~Kernel() = default;
     virtual Predicted predicted(std::size_t i) const = 0;
-    virtual void scale_motion(double velocity, double spin) = 0;
+    virtual void scale_motion(double factor) = 0;
     virtual void write_records() = 0;  ///< all grains, after anything but a step changed them
     virtual void rebuild_near() = 0;  ///< near pairs and wall slots from the candidates; history carried over
     virtual void
@@ -90,7 +90,7 @@ struct Engine::KernelOf final : Engine::Kernel {
 
     void write_records() override;
     Predicted predicted(std::size_t i) const override;
-    void scale_motion(double velocity, double spin) override;
+    void scale_motion(double factor) override;
     void rebuild_near() override;
     void rebuild_walls();
     void carry_history() override;

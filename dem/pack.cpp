@@ -15,8 +15,6 @@
 namespace gradwright {
 namespace {
 
-constexpr double kSphere = 4.0 / 3.0 * std::numbers::pi;
-
 /// Random sequential placement, largest first, in a box at packing `fill` (0.28: far below the 0.38 where
 /// placement jams).
 struct Placement {

@@ -18,11 +18,6 @@ namespace {
 constexpr double kJamOverlap = 0.05;  // of the radius: such a grain counts as pinched
 constexpr double kWorstStart = 0.15;  // of the radius: more is no settled bed
 constexpr double kStickyBond = 100;   // pull-off force over weight: above it a grain hangs where it touches
-constexpr double kFar = 1.0;          // beyond any scene [m]
-
-double volume_of(double r) {
-    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
-}
 
 Snapshot snapshot_of(const Engine& engine, double blade_x) {
     const State& s = engine.state();
@@ -49,7 +44,7 @@ double heap_length(const Engine& engine, const Scene& scene, double blade_x, dou
     double solid = 0;
     const State& s = engine.state();
     for (std::size_t i = 0; i < s.size(); ++i)
-        if (!s.fixed[i] && s.x[i] > blade_x && s.z[i] > 0) solid += volume_of(s.radius[i]);
+        if (!s.fixed[i] && s.x[i] > blade_x && s.z[i] > 0) solid += sphere_volume(s.radius[i]);
     const double section = solid / (scene.width * std::max(packing, 0.3));
     return std::sqrt(2 * section / std::tan(std::numbers::pi / 6));
 }

@@ -3,9 +3,15 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace gradwright {
+
+/// [m3] of a sphere of `radius` [m].
+inline double sphere_volume(double radius) {
+    return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
 
 struct SizeDistribution {
     double d10 = 25e-6;       ///< asked for, by volume [m]

@@ -31,7 +31,7 @@ double rayleigh() {
 }
 
 double mass(double r) {
-    return kMetal.density * 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    return kMetal.density * sphere_volume(r);
 }
 
 /// Speed of a smallest grain whose kinetic energy is the Hertz energy 8/15 E* sqrt(R*) delta^(5/2) of a

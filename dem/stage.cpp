@@ -12,18 +12,12 @@
 namespace gradwright {
 namespace {
 
-constexpr double kFar = 1.0;  // depth of the solid bodies [m]: anything beyond the scene
-
 // A grain that meets the dispenser's rim below the edge, or the edge itself, is pinched between blade and
 // rim, whatever the stiffness (friction 0.64 locks the wedge). The blade's lip presses it with a limited
 // force: that at an overlap of 0.6 % r and a softening of 1e-4, about a thousand grain weights, so that the
 // grains it is pressed against keep within the 3 % rule. The force is the blade's and stays when the grains
 // are made stiffer. It is not what empties a short bed under a fast blade: docs/bulk.md.
 constexpr double kBladeYield = 0.006, kYieldSoftening = 1e-4;
-
-double volume_of(double r) {
-    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
-}
 
 /// Level and dose: the bed already stands raised (z = 0 is the blade's plane). Cut it so that the solid above
 /// z = 0 is (h - c) x area x bed packing in each chamber. Returns false when the bed is too low.
@@ -45,7 +39,7 @@ bool level(Bed& bed, const Scene& scene, const PartitionCurve* partition, double
         std::sort(above[k].begin(), above[k].end(), [&](auto a, auto b) { return bed.z[a] < bed.z[b]; });
         double sum = 0;
         for (const std::size_t i : above[k]) {
-            const double v = volume_of(bed.radius[i]);
+            const double v = sphere_volume(bed.radius[i]);
             if (sum + 0.5 * v > wanted[k])
                 drop[i] = 1;
             else
@@ -143,7 +137,7 @@ double bond_number(const Scene& scene, double work_of_adhesion) {
     // F_po = 3/2 pi R* Gamma', R* = d/4
     const double d = scene.powder[0].size.number_quantile(0.5);
     return 1.5 * std::numbers::pi * 0.25 * d * work_of_adhesion /
-           (scene.powder[0].material.density * volume_of(0.5 * d) * scene.gravity);
+           (scene.powder[0].material.density * sphere_volume(0.5 * d) * scene.gravity);
 }
 
 Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const GrainPlace> places,
@@ -165,7 +159,7 @@ Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const Grai
     std::vector<double> floor_moves;
     for (const GrainPlace& place : places) {
         const std::size_t k = place.bed_index;
-        const double volume = volume_of(bed.radius[k]);
+        const double volume = sphere_volume(bed.radius[k]);
         const bool is_a = stage.labelled && bed.material[k] == 0;
         present[k] = 1;
         if (bed.z[k] < -scene.bed_depth + scene.powder[0].size.d90 && bed.x[k] > 2 * d50 &&
@@ -188,8 +182,9 @@ Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const Grai
     }
     for (std::size_t k = 0; k < present.size(); ++k) {
         if (present[k]) continue;
-        layer.overflow_solid_volume += volume_of(bed.radius[k]);
-        if (stage.labelled && bed.material[k] == 0) layer.overflow_solid_volume_a += volume_of(bed.radius[k]);
+        layer.overflow_solid_volume += sphere_volume(bed.radius[k]);
+        if (stage.labelled && bed.material[k] == 0)
+            layer.overflow_solid_volume_a += sphere_volume(bed.radius[k]);
     }
     if (!floor_moves.empty()) {
         std::sort(floor_moves.begin(), floor_moves.end());

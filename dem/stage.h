@@ -13,6 +13,7 @@ namespace gradwright {
 
 /// Front face of the blade before it moves: clear of the powder [m].
 inline constexpr double kBladeStart = -20e-6;
+inline constexpr double kFar = 1.0;  ///< depth of the solid bodies: beyond any scene [m]
 
 struct Stage {
     Bed bed;                        ///< levelled: z = 0 is the blade's plane

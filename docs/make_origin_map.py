@@ -14,6 +14,7 @@ import sys
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RUNS = os.path.join(ROOT, "runs", "origin-map")
 STUDY = "examples/01_linear_coupon.toml"
+PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 
 
 def program(arguments, name):
@@ -24,7 +25,7 @@ def program(arguments, name):
     if not os.path.exists(kept):
         os.makedirs(RUNS, exist_ok=True)
         print("running:", " ".join(arguments), file=sys.stderr, flush=True)
-        done = subprocess.run(["./gradwright", *arguments, "--json"], cwd=ROOT, stdout=subprocess.PIPE)
+        done = subprocess.run([PROGRAM, *arguments, "--json"], cwd=ROOT, stdout=subprocess.PIPE)
         if done.returncode not in (0, 4):
             return None
         with open(kept, "wb") as file:

@@ -83,7 +83,10 @@ def rotation(r):
 
 
 def with_heap(r):
-    return [row for row in r["figures"]["mixing"]["rows"] if row["lacey_in_slices"] is not None]
+    """Instants between the dispenser's end, where all the powder has been gathered and no unmixed powder joins any more, and the
+    platform's end."""
+    left = float(value_of(r, "machine.dispenser.length").split()[0]) * 1e-3
+    return [row for row in r["figures"]["mixing"]["rows"] if row["lacey_in_slices"] is not None and row["blade_x_m"] >= left]
 
 
 def summary_text(r):

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 
 #include "dem/gradation.h"
 #include "dem/stage.h"
@@ -91,7 +90,7 @@ HeapShape heap_shape(const Snapshot& snapshot, double width) {
     for (std::size_t k = 0; k < snapshot.x.size(); ++k) {
         const double ahead = snapshot.x[k] - snapshot.blade_x;
         if (!(ahead > 0 && snapshot.z[k] > 0)) continue;
-        const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(snapshot.radius[k], 3);
+        const double volume = sphere_volume(snapshot.radius[k]);
         const std::size_t bin = static_cast<std::size_t>(ahead / kHeapBin);
         if (heap.solid_depth.size() <= bin) heap.solid_depth.resize(bin + 1, 0);
         heap.solid_depth[bin] += volume / (kHeapBin * width);
@@ -178,7 +177,8 @@ Crosscheck run_crosscheck(const Study& study, const CrosscheckOptions& options) 
     result.lammps.ranks_or_threads = options.ranks;
     result.weight = bin_weights(study);
     for (int b = 0; b < study.bins.count; ++b) result.y_m.push_back(study.bins.centre(b));
-    result.differences = lammps_differences(crosscheck_scene(study, options, study.seed), !options.study_law);
+    result.differences = lammps_differences(crosscheck_scene(study, options, study.seed), !options.study_law,
+                                            options.rigid_blade);
     const auto tell = [&](const std::string& stage, double fraction) {
         if (options.progress) options.progress(stage, fraction);
     };
@@ -230,6 +230,7 @@ Crosscheck run_crosscheck(const Study& study, const CrosscheckOptions& options) 
         LammpsSpreadOptions lammps;
         lammps.folder = fmt::format("{}/bed-{}", options.folder, k + 1);
         lammps.ranks = options.ranks;
+        lammps.rigid_blade = options.rigid_blade;
         lammps.shots = {result.ours.runs.back().heap.blade_x};
         LammpsRun facts;
         const SpreadResult there = run_lammps_stage(scene, stage, spread, lammps, &facts);

@@ -18,7 +18,8 @@ struct CrosscheckOptions {
     /// true: the study's own law in ours. false (default): spring rolling and plain Hertz walls, the nearest
     /// to LAMMPS's, so that what is compared is the engines and not the models.
     bool study_law = false;
-    bool full_width = false;  ///< true: both powders over the whole width; false: the map's narrow strip
+    bool full_width = false;   ///< true: both powders over the whole width; false: the map's narrow strip
+    bool rigid_blade = false;  ///< LAMMPS's blade as in LammpsDeckOptions
     std::string cache_folder;
     std::string folder;  ///< decks, data, logs and dumps go here
     std::function<void(const std::string& stage, double fraction)> progress;

@@ -15,10 +15,11 @@ constexpr int kFixedType = 3;  // 1 = A, 2 = B
 const char* const kGroups[2] = {"a", "b"};
 
 /// One wall in the deck: a fix for each powder that is there, because fix wall/gran knows one stiffness.
-std::string wall_fixes(const LammpsLaw& law, const Body& body, const std::string& name, int powders) {
+std::string wall_fixes(const LammpsLaw& law, const Body& body, const std::string& name, int powders,
+                       double softer) {
     std::string out;
     for (int k = 0; k < powders; ++k) {
-        const std::string numbers = law.wall(k, body.frictionless);
+        const std::string numbers = law.wall(k, body.frictionless, softer);
         if (body.kind == Body::Kind::plane) {
             const char axis = "xyz"[body.axis];
             const std::string at = fmt::format("{:.17g}", body.offset);
@@ -78,7 +79,8 @@ std::string lammps_deck(const Scene& scene, const Stage& stage, const LammpsDeck
     line(
         "# Types: 1 powder A, 2 powder B, 3 fixed rough grains. SI units. What its law cannot say as ours "
         "does:");
-    for (const std::string& difference : lammps_differences(scene, false)) line("#   " + difference);
+    for (const std::string& difference : lammps_differences(scene, false, options.rigid_blade))
+        line("#   " + difference);
     line(
         "# Every `run` after the first says `pre no`: fix wall/gran puts its damping through the tsuji "
         "polynomial");
@@ -115,7 +117,7 @@ std::string lammps_deck(const Scene& scene, const Stage& stage, const LammpsDeck
                 "region {} block {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} side out{} units box", name,
                 body.x0, body.x1, -1.0, 1 + scene.width, body.z0, body.z1,
                 moves ? " move v_way NULL NULL" : ""));
-        out += wall_fixes(law, body, name, powders);
+        out += wall_fixes(law, body, name, powders, options.rigid_blade ? 1 : wall_softening(body));
     }
     line("fix motion mobile nve/sphere");
     if (options.ranks > 1) line("fix even all balance ${balance_every} 1.05 shift x 10 1.02");

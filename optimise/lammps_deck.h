@@ -13,6 +13,7 @@ struct LammpsDeckOptions {
     /// Blade positions at which the grains are dumped on the way: rising, between kBladeStart and the
     /// platform's end [m].
     std::vector<double> shots;
+    bool rigid_blade = false;  ///< as hard as the other walls: pinched grains are shot (see wall_softening)
 };
 
 // Names of the files in the deck's folder.

@@ -36,8 +36,7 @@ LammpsLaw::LammpsLaw(const Scene& scene, bool rolling)
     adhesion_ = engine.work_of_adhesion();
     damping_number_ = tsuji_number(interaction_.coefficient_of_restitution);
     median_radius_ = 0.5 * scene.powder[0].size.number_quantile(0.5);
-    median_mass_ =
-        scene.powder[0].material.density * 4.0 / 3.0 * std::numbers::pi * std::pow(median_radius_, 3);
+    median_mass_ = scene.powder[0].material.density * sphere_volume(median_radius_);
 }
 
 std::string LammpsLaw::rest(const PairConstants& k, bool wall, bool frictionless) const {
@@ -75,15 +74,21 @@ std::string LammpsLaw::pair(int material_i, int material_j) const {
     return normal + rest(k, false, false);
 }
 
-std::string LammpsLaw::wall(int material, bool frictionless) const {
-    const PairConstants k = constants(material, kWallMaterial);
+double wall_softening(const Body& body) {
+    return body.yield_ratio > 0 ? 2.5 * std::pow(body.yield_ratio, 1.5) : 1;
+}
+
+std::string LammpsLaw::wall(int material, bool frictionless, double softer) const {
+    PairConstants k = constants(material, kWallMaterial);
+    k.e_star *= softer;
+    k.g_star8 *= softer;
     const double nu = poissons_ratio_;
     return fmt::format("hertz/material {:.17g} {:.17g} {:.17g}", 2 * (1 - nu) * k.e_star, damping_number_,
                        nu) +
            rest(k, true, frictionless);
 }
 
-std::vector<std::string> lammps_differences(const Scene& scene, bool common_law) {
+std::vector<std::string> lammps_differences(const Scene& scene, bool common_law, bool rigid_blade) {
     const Interaction& i = scene.interaction;
     std::vector<std::string> out;
     const bool adhesive = i.work_of_adhesion > 0;
@@ -107,9 +112,12 @@ std::vector<std::string> lammps_differences(const Scene& scene, bool common_law)
     }
     if (scene.blade_speed > 0)
         out.push_back(
-            "blade: yields in ours (a pinched grain is pressed with the force of an overlap of 0.6 % r at "
-            "most), "
-            "rigid in LAMMPS");
+            std::string("blade: yields in ours (a pinched grain is pressed with the force of an overlap of "
+                        "0.6 % r at most), ") +
+            (rigid_blade
+                 ? "rigid in LAMMPS"
+                 : "in LAMMPS a plain Hertz wall soft enough to do the same work on a grain pressed in "
+                   "by its radius (a rigid one shoots what it pinches at an edge through the heap)"));
     if (i.friction_cap != FrictionCap::thornton)
         out.push_back("friction cap: the study's in ours, thornton's in LAMMPS");
     out.push_back(

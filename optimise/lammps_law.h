@@ -29,6 +29,12 @@ double tsuji_number(double restitution);
 /// LAMMPS's polynomial itself: c of a number.
 double tsuji_damping(double number);
 
+/// Stiffness of a plain Hertz wall, over the real one's, that does as much work as a yielding one of ours
+/// (Body::yield_ratio) on a grain pressed in by its radius: LAMMPS has no wall that yields, and a rigid blade
+/// shoots what it pinches at an edge through the heap. 1 for a body that does not yield.
+///   ours F_y r = 4/3 E* r^2 y^(3/2) r, there 2/5 (4/3 s E*) r^(1/2) r^(5/2), so s = 5/2 y^(3/2)
+double wall_softening(const Body& body);
+
 class LammpsLaw {
   public:
     /// `rolling`: false leaves rolling resistance out (two-body comparison).
@@ -37,8 +43,9 @@ class LammpsLaw {
     /// What follows "pair_coeff I J ": materials as in EngineOptions (0 = A, 1 = B, 2 = fixed grains).
     std::string pair(int material_i, int material_j) const;
     /// What follows "fix ID GROUP wall/gran granular " or ".../region granular ": one grain material against
-    /// the walls. Never adhesive: JKR walls take the distance of pull-off with the wrong sign.
-    std::string wall(int material, bool frictionless = false) const;
+    /// the walls. Never adhesive: JKR walls take the distance of pull-off with the wrong sign. `softer`: its
+    /// stiffness over that of the real wall.
+    std::string wall(int material, bool frictionless = false, double softer = 1) const;
 
     bool adhesive() const { return adhesion_ > 0; }
     /// Softened E*, 8 G* of two materials, as our engine uses them.
@@ -59,6 +66,7 @@ class LammpsLaw {
 
 /// Every way in which a LAMMPS run of a scene differs from ours on purpose or for want of a model, one
 /// sentence each. `common_law`: ours ran with spring rolling and plain Hertz walls, to be as near as can be.
-std::vector<std::string> lammps_differences(const Scene& scene, bool common_law);
+/// `rigid_blade`: LAMMPS's blade is as hard as the other walls.
+std::vector<std::string> lammps_differences(const Scene& scene, bool common_law, bool rigid_blade = false);
 
 }  // namespace gradwright

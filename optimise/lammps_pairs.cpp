@@ -177,7 +177,7 @@ class Laboratory {
     double mass(const Grain& g) const {
         const double density =
             g.material == kWallMaterial ? scene_.wall.density : scene_.powder[g.material].material.density;
-        return density * 4.0 / 3.0 * std::numbers::pi * g.radius * g.radius * g.radius;
+        return density * sphere_volume(g.radius);
     }
 
   private:

@@ -124,7 +124,8 @@ SpreadResult run_lammps_stage(const Scene& scene, const Stage& stage, const Spre
 
     const fs::path folder = lammps.folder;
     fs::create_directories(folder);
-    write_text(folder / kLammpsDeck, lammps_deck(scene, stage, {lammps.ranks, lammps.shots}));
+    write_text(folder / kLammpsDeck,
+               lammps_deck(scene, stage, {lammps.ranks, lammps.shots, lammps.rigid_blade}));
     write_text(folder / kLammpsBed, lammps_bed(scene, stage));
     LammpsRunOptions run;
     run.folder = lammps.folder;
@@ -198,7 +199,7 @@ SpreadFunction lammps_spread_function(const std::string& folder, int ranks) {
     return [folder, ranks, count](const Scene& scene, const PartitionCurve* partition,
                                   const SpreadOptions& options) {
         return run_lammps_spread(scene, partition, options,
-                                 {fmt::format("{}/spread-{}", folder, ++*count), ranks, {}});
+                                 {fmt::format("{}/spread-{}", folder, ++*count), ranks, {}, false});
     };
 }
 

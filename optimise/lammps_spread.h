@@ -15,6 +15,7 @@ struct LammpsSpreadOptions {
     std::string folder;         ///< deck, data, log and dumps of this spread; made when it is not there
     int ranks = 1;              ///< MPI processes
     std::vector<double> shots;  ///< blade positions of snapshots on the way [m]
+    bool rigid_blade = false;   ///< as in LammpsDeckOptions
 };
 
 /// One stage in LAMMPS, as spread_stage: our bed, levelled and raised, our time step, our end condition, our

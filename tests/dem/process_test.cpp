@@ -6,17 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
 #include "dem/bed.h"
 #include "dem/engine.h"
 
 namespace gradwright {
 namespace {
-
-double volume_of(double r) {
-    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
-}
 
 /// The paper's powders without fines on a machine half a millimetre long.
 Scene tiny_scene() {
@@ -97,7 +92,7 @@ TEST(Packing, grains_lie_on_their_side_of_the_partition) {
     double volume[2] = {};
     for (std::size_t i = 0; i < bed.x.size(); ++i) {
         wrong += (bed.material[i] == 0) != partition.on_side_a(bed.x[i], bed.y[i]);
-        volume[bed.material[i]] += volume_of(bed.radius[i]);
+        volume[bed.material[i]] += sphere_volume(bed.radius[i]);
     }
     EXPECT_LE(wrong, bed.x.size() / 50);  // what crossed while the last grains settled
     EXPECT_GT(volume[0] / (volume[0] + volume[1]), 0.35);
@@ -228,10 +223,11 @@ TEST_F(Spread, one_and_three_threads_leave_the_same_bits_and_no_grain_is_lost) {
 
     const double platform = scene.dispenser_length + scene.land, end = platform + scene.platform_length;
     double before = 0, rest = 0;
-    for (const float r : one.snapshots.front().radius) before += volume_of(r);
+    for (const float r : one.snapshots.front().radius) before += sphere_volume(r);
     const Snapshot& last = one.snapshots.back();
     for (std::size_t i = 0; i < last.x.size(); ++i)
-        if (last.x[i] < end && (last.x[i] < platform || last.z[i] >= 0)) rest += volume_of(last.radius[i]);
+        if (last.x[i] < end && (last.x[i] < platform || last.z[i] >= 0))
+            rest += sphere_volume(last.radius[i]);
     EXPECT_GT(one.layer.size(), 20u);
     EXPECT_NEAR((one.layer.solid_volume() + one.layer.overflow_solid_volume + rest) / before, 1, 1e-5);
     EXPECT_LT(one.layer.solid_volume(), one.layer.dosed_solid_volume);
@@ -270,8 +266,8 @@ TEST_F(Spread, each_material_of_the_scene_has_its_own_mass_and_stiffness_in_the_
     Engine engine(engine_options(scene, 1));
     engine.add_grain({.radius = 20e-6, .material = 0});
     engine.add_grain({.x = 1e-3, .radius = 20e-6, .material = 1});
-    EXPECT_NEAR(engine.state().mass[0], 7980 * volume_of(20e-6), 1e-18);
-    EXPECT_NEAR(engine.state().mass[1], 4000 * volume_of(20e-6), 1e-18);
+    EXPECT_NEAR(engine.state().mass[0], 7980 * sphere_volume(20e-6), 1e-18);
+    EXPECT_NEAR(engine.state().mass[1], 4000 * sphere_volume(20e-6), 1e-18);
     const double reduced = 0.91 * (1 / 210e5 + 1 / 195e5);  // (1 - nu^2)(1/E1 + 1/E2), E softened by 1e-4
     EXPECT_NEAR(engine.pair_constants(0, 1).e_star * reduced, 1, 1e-12);
     EXPECT_NEAR(engine.pair_constants(0, 0).e_star * 2 * 0.91 / 210e5, 1, 1e-12);

@@ -158,7 +158,32 @@ TEST(LammpsDeck, names_every_pair_and_a_wall_for_each_powder) {
     EXPECT_THAT(deck, Not(HasSubstr("processors")));
     stage.labelled = false;
     EXPECT_THAT(lammps_deck(scene, stage, {}), Not(HasSubstr("blade_b")));
-    EXPECT_THAT(lammps_deck(scene, stage, {2, {}}), HasSubstr("processors 2 1 1"));
+    EXPECT_THAT(lammps_deck(scene, stage, {2, {}, false}), HasSubstr("processors 2 1 1"));
+}
+
+TEST(LammpsDeck, the_blade_does_as_much_work_as_one_that_yields_on_a_grain_pressed_in_by_its_radius) {
+    Body blade;
+    EXPECT_EQ(wall_softening(blade), 1);
+    blade.yield_ratio = 0.006;
+    const double r = 20e-6, k = 4.0 / 3.0 * 1.7e7 * std::sqrt(r);  // Hertz: k overlap^(3/2)
+    double ours = 0, theirs = 0;
+    const int n = 100000;
+    for (int i = 0; i < n; ++i) {
+        const double overlap = r * (i + 0.5) / n;
+        ours += k * std::pow(std::min(overlap, blade.yield_ratio * r), 1.5) * r / n;
+        theirs += wall_softening(blade) * k * std::pow(overlap, 1.5) * r / n;
+    }
+    EXPECT_NEAR(theirs / ours, 1, 0.005);  // ours: but for the way to the yield point
+
+    const Scene scene = small_scene();
+    Stage stage = hand_made_stage();
+    stage.bodies[1].yield_ratio = 0.006;
+    const LammpsLaw law(scene);
+    const std::string deck = lammps_deck(scene, stage, {}), soft = law.wall(0, false, wall_softening(blade));
+    EXPECT_NE(soft, law.wall(0));
+    EXPECT_THAT(deck, HasSubstr("fix blade_a a wall/gran/region granular " + soft));
+    EXPECT_THAT(deck, HasSubstr("granular " + law.wall(0)));  // the other walls are as hard as they were
+    EXPECT_THAT(lammps_deck(scene, stage, {1, {}, true}), Not(HasSubstr(soft)));
 }
 
 TEST(LammpsDeck, data_holds_fixed_grains_first_and_each_grain_with_its_own_density) {
