@@ -70,9 +70,10 @@ bool moves_alike(const Study& study) {
     return a.size == b.size && std::fabs(a.material.density / b.material.density - 1) <= kLikeDensity;
 }
 
-void MapEvaluator::learn(const Design& design, const Layer& layer) {
+void MapEvaluator::learn(const Design& design, const Layer& layer, const std::string& state_hash) {
     OriginMap& map = map_of(design);
     map.layers.push_back(layer);
+    map.state_hash += "+" + state_hash;
     map.average();
 }
 

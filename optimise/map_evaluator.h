@@ -45,8 +45,8 @@ class MapEvaluator : public Evaluator {
     /// Runs the strips when these motion variables are new. The reference stays valid.
     OriginMap& map_of(const Design& design, std::uint64_t seed = 0);
     /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
-    /// `design`: its origins are as good as the strips'.
-    void learn(const Design& design, const Layer& layer);
+    /// `design`: its origins are as good as the strips'. `state_hash`: of that spread.
+    void learn(const Design& design, const Layer& layer, const std::string& state_hash);
 
   private:
     using Key = std::array<double, 5>;

@@ -298,7 +298,8 @@ class MapStrategy {
     ConfirmedDesign correct(const ConfirmedDesign& round, bool profile, bool drift) {
         if (moves_alike(study_) && motion_.fill_fraction[0] == motion_.fill_fraction[1] &&
             round.layers.front().periodic) {
-            for (const Layer& layer : round.layers) run_.map.learn(motion_, layer);
+            for (std::size_t k = 0; k < round.layers.size(); ++k)
+                run_.map.learn(motion_, round.layers[k], round.confirmations.at(k).state_hash);
             return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};
         }
         const std::vector<double>& weight = run_.result.weight;

@@ -222,12 +222,12 @@ std::string heap_velocity_svg(const SpreadFigures& figures) {
             left, second + height + 64,
             fmt::format(
                 "Circulation {:.3g} mm\u00b2/s over {:.3f} mm\u00b2; mean vorticity {:.0f} \u00b1 {:.0f} 1/s "
-                "between instants ({}):",
-                turn.circulation * 1e6, turn.area * 1e6, turn.vorticity, turn.deviation,
-                turn.vorticity < 0 ? "clockwise, rolls forward" : "anticlockwise"),
+                "between instants",
+                turn.circulation * 1e6, turn.area * 1e6, turn.vorticity, turn.deviation),
             {.size = 12});
         figure.text(left, second + height + 82,
-                    fmt::format("one turn of the mean rotation in {:.2f} mm of the blade's way.",
+                    fmt::format("({}): one turn of the mean rotation in {:.2f} mm of the blade's way.",
+                                turn.vorticity < 0 ? "clockwise, rolls forward" : "anticlockwise",
                                 turn.turn_length(speed) * 1e3),
                     {.size = 12});
     }
@@ -265,8 +265,10 @@ std::string heap_mixing_svg(const Study& study, const Evaluation& evaluation, co
         const Snapshot& shot = spread.snapshots[figures.shown[p]];
         const double at = left + static_cast<double>(p) * (width + gap);
         Axes axes(figure, at, top, width, height, {0, x_end}, {0, y_end});
-        draw_from_above(figure, axes, shot, heap_grains(shot, options.least_speed), shot.blade_x,
-                        options.periodic ? options.width : 0, scale);
+        std::vector<std::size_t> inside = heap_grains(shot, options.least_speed);
+        std::erase_if(inside, [&](std::size_t n) { return (shot.x[n] - shot.blade_x) * 1e3 > x_end; });
+        draw_from_above(figure, axes, shot, inside, shot.blade_x, options.periodic ? options.width : 0,
+                        scale);
         axes.frame("ahead of the blade (mm)", p == 0 ? "y (mm)" : "");
         const double from_edge = (shot.blade_x - platform) * 1e3;
         figure.text(at + width / 2, top - 7,
