@@ -8,6 +8,7 @@
 
 #include "cli/common.h"
 #include "cli/progress.h"
+#include "cli/signals.h"
 #include "reports/json_support.h"
 
 namespace gradwright::cli {
@@ -64,6 +65,7 @@ ExitCode run_bulk(const BulkCommand& command, const CommonOptions& common) {
     options.threads = thread_count(common);
     options.cache_folder = cache_folder(common);
     options.progress = [&progress](const Progress& p) { progress.update(p.stage, p.fraction); };
+    options.stop = watch_signals();
     const ReposeResult r = drain(scene, setup, options);
     progress.finish();
     if (common.json) {
@@ -80,7 +82,7 @@ ExitCode run_bulk(const BulkCommand& command, const CommonOptions& common) {
     if (!r.health.ok()) {
         fmt::print(stderr, "gradwright: the simulation ended with '{}': {}\n", r.health.status,
                    r.health.reason);
-        return ExitCode::simulation_failed;
+        return exit_code_of(r.health);
     }
     return ExitCode::met;
 }

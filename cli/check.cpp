@@ -32,27 +32,6 @@ int free_count(const DesignSpace& space) {
     return 2 * space.knots - 2;
 }
 
-/// Warnings of the study and of its scenes, each once.
-std::vector<std::string> all_warnings(const Study& study, const StudyEstimate& estimate) {
-    std::vector<std::string> texts;
-    std::set<std::string> seen;
-    const auto add = [&](const std::string& text) {
-        if (seen.insert(text).second) texts.push_back(text);
-    };
-    for (const std::string& text : study.warnings) add(text);
-    for (const SpreadEstimate& spread : estimate.spreads)
-        for (const SceneProblem& problem : spread.problems)
-            if (!problem.fatal) add(problem.text);
-    if (estimate.supply_ratio < kDoubtfulSupply && estimate.supply_ratio >= kRefusedSupply)
-        add(fmt::format(
-            "supply ratio {:.2f} is below {}: the end of the platform may run dry; raise dosage_factor",
-            estimate.supply_ratio, kDoubtfulSupply));
-    if (estimate.supply_ratio < kRefusedSupply && study.allow_starved)
-        add(fmt::format("supply ratio {:.2f} is below {} and allowed by the study: the layer will be starved",
-                        estimate.supply_ratio, kRefusedSupply));
-    return texts;
-}
-
 /// What makes the study impossible, as input problems.
 std::vector<InputProblem> fatal_problems(const Study& study, const StudyEstimate& estimate) {
     std::vector<InputProblem> problems;
@@ -171,6 +150,26 @@ ExitCode run_check(const CheckOptions& options, const CommonOptions& common) {
 void refuse_impossible(const Study& study, const StudyEstimate& estimate) {
     const std::vector<InputProblem> problems = fatal_problems(study, estimate);
     if (!problems.empty()) throw InputError{problems};
+}
+
+std::vector<std::string> all_warnings(const Study& study, const StudyEstimate& estimate) {
+    std::vector<std::string> texts;
+    std::set<std::string> seen;
+    const auto add = [&](const std::string& text) {
+        if (seen.insert(text).second) texts.push_back(text);
+    };
+    for (const std::string& text : study.warnings) add(text);
+    for (const SpreadEstimate& spread : estimate.spreads)
+        for (const SceneProblem& problem : spread.problems)
+            if (!problem.fatal) add(problem.text);
+    if (estimate.supply_ratio < kDoubtfulSupply && estimate.supply_ratio >= kRefusedSupply)
+        add(fmt::format(
+            "supply ratio {:.2f} is below {}: the end of the platform may run dry; raise dosage_factor",
+            estimate.supply_ratio, kDoubtfulSupply));
+    if (estimate.supply_ratio < kRefusedSupply && study.allow_starved)
+        add(fmt::format("supply ratio {:.2f} is below {} and allowed by the study: the layer will be starved",
+                        estimate.supply_ratio, kRefusedSupply));
+    return texts;
 }
 
 StudyEstimate estimate(const Study& study, int threads) {

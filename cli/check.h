@@ -36,6 +36,9 @@ struct StudyEstimate {
 
 StudyEstimate estimate(const Study& study, int threads);
 
+/// Warnings of the study and of its scenes, each once.
+std::vector<std::string> all_warnings(const Study& study, const StudyEstimate& estimate);
+
 /// Throws InputError with everything that forbids a spread: fatal scene problems, a dose that starves the
 /// layer.
 void refuse_impossible(const Study& study, const StudyEstimate& estimate);

@@ -260,7 +260,7 @@ ExitCode run_crosscheck_command(const CrosscheckCommand& command, const CommonOp
     if (!common.quiet) fmt::print(stderr, "gradwright: decks, logs and results are in {}\n", options.folder);
     if (!result.health.ok()) {
         fmt::print(stderr, "gradwright: ended with '{}': {}\n", result.health.status, result.health.reason);
-        return exit_code_of(result.health);
+        return result.health.status == "failed" ? ExitCode::external : exit_code_of(result.health);
     }
     return result.forces_agree && result.gradation_agrees ? ExitCode::met : ExitCode::not_met;
 }

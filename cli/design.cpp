@@ -73,8 +73,13 @@ ExitCode run_design(const DesignOptions& options, CommonOptions common) {
     // The map strategy's budget is an input of the study, so that it is listed with the others.
     if (options.strategy == "map" && options.budget > 0)
         common.set.push_back(fmt::format("run.max_spreads={}", options.budget));
-    const Study study = load_study(options.study, common);
-    refuse_impossible(study, estimate(study, thread_count(common)));
+    Study study = load_study(options.study, common);
+    const StudyEstimate cost = estimate(study, thread_count(common));
+    refuse_impossible(study, cost);
+    study.warnings = all_warnings(study, cost);  // they go into every result
+    if (!common.quiet)
+        for (const std::string& warning : study.warnings)
+            fmt::print(stderr, "gradwright: warning: {}\n", warning);
 
     const std::string folder = make_out_folder(common, study.name);
     if (common.force) remove_earlier(folder);
@@ -89,14 +94,30 @@ ExitCode run_design(const DesignOptions& options, CommonOptions common) {
                                   options.budget > 0 ? options.budget : kPlainBudget, run);
     progress.finish();
 
-    const std::vector<std::string> files =
-        writing(folder, [&] { return write_outputs(study, result, folder); });
-    if (common.json)
-        fmt::print("{}\n", json_text(to_json(study, result, files)));
-    else
+    // What took minutes is shown even when it cannot be kept.
+    std::vector<std::string> files;
+    std::optional<Failure> unwritten;
+    if (!result.unwritten.empty())
+        unwritten = Failure(ExitCode::io, result.unwritten,
+                            "is there space and a right to write in '" + folder + "'?");
+    try {
+        files = writing(folder, [&] { return write_outputs(study, result, folder); });
+    } catch (const Failure& failure) {
+        unwritten = failure;
+    }
+    if (common.json) {
+        nlohmann::json object = to_json(study, result, files);
+        if (unwritten) object.update(error_json(unwritten->code, unwritten->message, unwritten->mend));
+        fmt::print("{}\n", json_text(object));
+    } else {
         fmt::print("{}\n",
                    summary(study, result, folder, files,
                            colour_allowed(STDOUT_FILENO) ? TerminalColour::ansi : TerminalColour::plain));
+    }
+    if (unwritten) {
+        fmt::print(stderr, "gradwright: {}\n  {}\n", unwritten->message, unwritten->mend);
+        return unwritten->code;
+    }
     const ExitCode code = exit_code_of(result);
     if (code == ExitCode::interrupted)
         fmt::print(

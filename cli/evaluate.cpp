@@ -134,10 +134,17 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
     const Fidelity fidelity = fidelity_of(options.fidelity);
     if (options.figures && fidelity != Fidelity::full)
         throw Failure(ExitCode::usage, "--figures needs the grains of a full spread", "use --fidelity full");
-    const Study study = load_study(options.study, common);
+    Study study = load_study(options.study, common);
     const auto composition = composition_request(options, study);
     // The kinematic picture needs no spread, so nothing about a spread can forbid it.
-    if (fidelity != Fidelity::kinematic) refuse_impossible(study, estimate(study, thread_count(common)));
+    if (fidelity != Fidelity::kinematic) {
+        const StudyEstimate cost = estimate(study, thread_count(common));
+        refuse_impossible(study, cost);
+        study.warnings = all_warnings(study, cost);
+        if (!common.quiet)
+            for (const std::string& warning : study.warnings)
+                fmt::print(stderr, "gradwright: warning: {}\n", warning);
+    }
     const Design design = options.design.empty() ? start_design(study) : read_design(options.design, study);
     const bool writes = !common.out.empty() || options.figures;
     const std::string folder = writes ? make_out_folder(common, study.name) : std::string();
@@ -146,33 +153,49 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
     if (!folder.empty()) run.lammps_folder = folder + "/lammps";
     if (options.figures) run.snapshots = kFigureInstants;
     SpreadResult spread;
-    const Evaluation evaluation =
+    Evaluation evaluation =
         evaluate_once(study, design, fidelity, study.seed, run, options.figures ? &spread : nullptr);
     progress.finish();
+    evaluation.health.warnings.insert(evaluation.health.warnings.begin(), study.warnings.begin(),
+                                      study.warnings.end());
 
+    // What took minutes is shown even when it cannot be kept.
     std::vector<std::string> files;
+    std::optional<Failure> unwritten;
+    const auto keep = [&](auto write) {
+        try {
+            writing(folder, write);
+        } catch (const Failure& failure) {
+            if (!unwritten) unwritten = failure;
+        }
+    };
     if (!folder.empty()) files.push_back("evaluation.json");
     std::optional<SpreadFigures> figures;
     if (options.figures && evaluation.health.ok()) {
         figures = spread_figures(study, design, spread, composition);
-        for (const std::string& name :
-             writing(folder, [&] { return write_figures(study, evaluation, spread, *figures, folder); }))
-            files.push_back(name);
+        keep([&] {
+            for (const std::string& name : write_figures(study, evaluation, spread, *figures, folder))
+                files.push_back(name);
+        });
     }
     nlohmann::json object = evaluation_json(study, evaluation, files);
     if (composition && evaluation.health.ok())
         object["composition"] = composition_json(study, evaluation, composition->pool);
     if (figures) object["figures"] = figures_json(study, *figures, composition);
-    const std::string text = json_text(object) + "\n";
-    if (!folder.empty()) writing(folder, [&] { write_file(folder + "/evaluation.json", text); });
+    if (!folder.empty()) keep([&] { write_file(folder + "/evaluation.json", json_text(object) + "\n"); });
     if (common.json) {
-        fmt::print("{}", text);
+        if (unwritten) object.update(error_json(unwritten->code, unwritten->message, unwritten->mend));
+        fmt::print("{}\n", json_text(object));
     } else {
         fmt::print("{}", evaluation_summary_text(study, evaluation));
         if (composition && evaluation.health.ok())
             fmt::print("{}", composition_text(study, evaluation, composition->pool));
         if (figures) fmt::print("{}", figures_text(*figures));
         fmt::print("\n");
+    }
+    if (unwritten) {
+        fmt::print(stderr, "gradwright: {}\n  {}\n", unwritten->message, unwritten->mend);
+        return unwritten->code;
     }
     if (!folder.empty() && !common.quiet) fmt::print(stderr, "gradwright: results are in {}\n", folder);
     const ExitCode code = exit_code_of(evaluation.health);

@@ -8,6 +8,7 @@
 
 #include "cli/common.h"
 #include "cli/progress.h"
+#include "cli/signals.h"
 #include "dem/hard_cases.h"
 #include "dem/stability.h"
 #include "reports/json_support.h"
@@ -30,6 +31,7 @@ nlohmann::json cases_json(const LimitsCommand& command, const SpreadOptions& opt
             continue;
         progress.update(all[k].id, static_cast<double>(k) / static_cast<double>(all.size()));
         const HardCase c = run_hard_case(all[k], options);
+        if (options.stop->load()) break;  // a case that was stopped says nothing
         all_pass = all_pass && c.pass;
         rows.push_back({{"id", c.id},
                         {"tried", c.tried},
@@ -41,15 +43,17 @@ nlohmann::json cases_json(const LimitsCommand& command, const SpreadOptions& opt
     return rows;
 }
 
-nlohmann::json edges_json(ProgressLine& progress) {
+nlohmann::json edges_json(ProgressLine& progress, const std::atomic<bool>& stop) {
     auto rows = nlohmann::json::array();
     const auto table = stability_table();
     for (std::size_t k = 0; k < table.size(); ++k) {
+        if (stop.load()) break;
         progress.update("stability edges", static_cast<double>(k) / static_cast<double>(table.size()));
         const StabilityEdge e = stability_edge(table[k].setup);
         rows.push_back({{"law", table[k].law},
                         {"packing", table[k].setup.packing == StabilityPacking::wedge ? "wedge" : "heap"},
                         {"size_ratio", number(table[k].setup.size_ratio)},
+                        {"overlap_asked", number(table[k].setup.overlap)},
                         {"overlap", number(e.overlap)},
                         {"grains", e.grains},
                         {"edge", number(e.edge())},
@@ -59,9 +63,10 @@ nlohmann::json edges_json(ProgressLine& progress) {
     return rows;
 }
 
-nlohmann::json sticking_json() {
+nlohmann::json sticking_json(const std::atomic<bool>& stop) {
     auto rows = nlohmann::json::array();
     for (const double ratio : {2.0, 3.0, 5.0, 10.0, 20.0, 50.0}) {
+        if (stop.load()) break;
         SaddleSetup setup;
         setup.size_ratio = ratio;
         const SaddleResult ours = roll_off_saddle(setup);
@@ -127,17 +132,19 @@ ExitCode run_limits(const LimitsCommand& command, const CommonOptions& common) {
     SpreadOptions options;
     options.threads = thread_count(common);
     options.cache_folder = cache_folder(common);
+    options.stop = watch_signals();
     bool all_pass = true;
     nlohmann::json result = nlohmann::json::object();
     if (wanted("cases")) result["cases"] = cases_json(command, options, progress, all_pass);
-    if (wanted("edges")) result["edges"] = edges_json(progress);
-    if (wanted("sticking")) result["sticking"] = sticking_json();
+    if (wanted("edges")) result["edges"] = edges_json(progress, *options.stop);
+    if (wanted("sticking")) result["sticking"] = sticking_json(*options.stop);
     result["stability_edge"] = kStabilityEdge;
     progress.finish();
     if (common.json)
         fmt::print("{}\n", json_text(result));
     else
         print_limits(result);
+    if (options.stop->load()) return ExitCode::interrupted;  // what was finished stands above
     return all_pass ? ExitCode::met : ExitCode::not_met;
 }
 

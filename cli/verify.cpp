@@ -11,6 +11,7 @@
 #include "cli/common.h"
 #include "cli/progress.h"
 #include "cli/run_options.h"
+#include "cli/signals.h"
 #include "reports/json_support.h"
 #include "reports/safe_write.h"
 
@@ -87,6 +88,7 @@ ExitCode run_verify_command(const VerifyCommand& command, const CommonOptions& c
         if (command.only.empty() ||
             std::find(command.only.begin(), command.only.end(), rung.id) != command.only.end())
             rungs.push_back(rung);
+    const std::atomic<bool>& stop = *watch_signals();
     std::vector<VerificationRun> runs;
     double done = 0;
     const double all = static_cast<double>(rungs.size() * laws.size());
@@ -96,6 +98,7 @@ ExitCode run_verify_command(const VerifyCommand& command, const CommonOptions& c
         if (mutation) options.fault = mutation->fault;
         runs.push_back({law, {}});
         for (const VerificationRung& rung : rungs) {
+            if (stop.load()) break;
             progress.update(fmt::format("{}, {} law", rung.id, law_name(law)), done++ / all);
             const VerificationCases cases = rung.run(options);
             runs.back().cases.insert(runs.back().cases.end(), cases.begin(), cases.end());
@@ -109,13 +112,14 @@ ExitCode run_verify_command(const VerifyCommand& command, const CommonOptions& c
     for (const VerificationRun& run : runs)
         failed += static_cast<std::size_t>(
             std::count_if(run.cases.begin(), run.cases.end(), [](const auto& c) { return !c.pass; }));
-    if (!command.docs.empty()) write_page(command.docs, runs, progress);
+    if (!command.docs.empty() && !stop.load()) write_page(command.docs, runs, progress);
     progress.finish();
     if (common.json)
         fmt::print("{}\n", json_text(verify_json(runs, command.mutate)));
     else
         fmt::print("{}", verify_summary(runs, mutation));
-    return failed == 0 ? ExitCode::met : ExitCode::internal;
+    if (stop.load()) return ExitCode::interrupted;  // the rungs that were finished stand above
+    return failed == 0 ? ExitCode::met : ExitCode::not_met;
 }
 
 }  // namespace

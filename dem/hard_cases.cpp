@@ -212,7 +212,7 @@ void partition_across(const SpreadOptions& options, HardCase& out) {
     double volume = 0, mean = 0, worst = 0;
     for (int k = 0; k < 4; ++k) volume += p.volume[k], mean += p.volume[k] * p.gi[k];
     mean /= volume;
-    // grains come in clumps from one place of the dispenser: the bootstrap over x blocks knows that
+    // grains come in clumps from one place of the dispenser: the standard error over x blocks knows that
     for (int k = 0; k < 4; ++k)
         worst = std::max(worst, std::fabs(p.gi[k] - mean) / std::max(p.standard_error[k], 1e-9));
     out.happened += fmt::format(

@@ -224,7 +224,9 @@ HeapMixing heap_mixing(const Snapshot& s, const HeapMixingOptions& options) {
     double removed = 0, removable = 0;
     for (int b = 0; b < slices; ++b) {
         const LaceyIndex& one = slice[b];
-        out.y_m.push_back((b + 0.5) * options.cell);
+        const double slice_end =
+            b + 1 < slices ? (b + 1) * options.cell : options.width;  // the last takes the rest
+        out.y_m.push_back(0.5 * (b * options.cell + slice_end));
         out.slice_gi.push_back(one.gi());
         // below 5 % of the other powder chance alone moves the index by its whole range
         const bool mixed_powder = one.volume() > 0 && std::min(one.gi(), 1 - one.gi()) > 0.05;

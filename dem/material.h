@@ -22,7 +22,6 @@ struct Material {
 
 enum class FrictionCap { thornton, edem_repulsive, normal };
 enum class RollingModel { none, constant_torque, spring, edem };
-enum class TangentialHistory { xi, rescale };
 enum class AdhesionScaling { cohesion_number, none };
 
 /// Interaction of every pair and wall (one set: the paper uses one for all pairs, table 1).

@@ -143,10 +143,14 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
     RunHealth health;
     const Stage stage = set_stage(scene, partition, options, health);
     SpreadResult out;
-    if (health.ok())
+    if (health.ok()) {
         out = spread_stage(scene, stage, options);
-    else
+        // of the packing: "the cache cannot be written"
+        out.health.warnings.insert(out.health.warnings.begin(), health.warnings.begin(),
+                                   health.warnings.end());
+    } else {
         out.health = health;
+    }
     out.bed = stage.bed.facts;
     out.seconds = omp_get_wtime() - start;
     out.seconds_cold = out.seconds - out.bed.seconds + out.bed.seconds_cold;

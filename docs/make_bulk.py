@@ -98,11 +98,12 @@ def gi():
 
 
 def along(r, gap):
-    """Packing along x: mass of the map's columns over density, gap and plan area."""
+    """Packing along x: solid volume of the map's columns over gap and plan area. GI is by volume, so a cell's density is its mean."""
     x = r["map"]["x_m"]
     cell, width = x[1] - x[0], 1.6e-3  # the map answers for the full width
-    columns = [sum(row[k] or 0 for row in r["map"]["mass_kg"]) for k in range(len(x))]
-    return [m / 7980 / (gap * cell * width) for m in columns]
+    solid = [sum(m[k] / (8200 + (7980 - 8200) * g[k]) for m, g in zip(r["map"]["mass_kg"], r["map"]["gi"]) if m[k] and g[k] is not None)
+             for k in range(len(x))]
+    return [v / (gap * cell * width) for v in solid]
 
 
 def layer():

@@ -32,7 +32,10 @@ def crosscheck(name="strip", study=STUDY, extra=()):
         if done.returncode not in (0, 4):
             sys.exit(f"crosscheck ended with exit code {done.returncode}")
     with open(kept) as file:
-        return json.load(file)
+        answer = json.load(file)
+    if answer["status"] != "ok":
+        sys.exit(f"{name}: ended with '{answer['status']}': {answer['reason']}; delete {out} to try again")
+    return answer
 
 
 def forces_table():

@@ -43,15 +43,17 @@ def edges_table():
         mine = [e for e in edges if e["packing"] == packing]
         laws = list(dict.fromkeys(e["law"] for e in mine))
         if packing == "heap":
-            rows.append("Heap under load, by size ratio and largest overlap (of the smaller radius, as it came out):\n")
+            rows.append("Heap under load, by size ratio and largest overlap asked for (of the smaller radius); in brackets what the law and "
+                        "the load came to:\n")
         else:
             rows.append("\nOne grain wedged between two plates, by overlap on either side:\n")
         columns = [e for e in mine if e["law"] == laws[0]]
-        heads = [f"{e['size_ratio']:.0f}, {100 * e['overlap']:.1f} %" if packing == "heap" else f"{100 * e['overlap']:.1f} %" for e in columns]
+        heads = [f"{e['size_ratio']:.0f}, {100 * e['overlap_asked']:.1f} %" if packing == "heap" else f"{100 * e['overlap_asked']:.1f} %"
+                 for e in columns]
         rows.append("| law | " + " | ".join(heads) + " |")
         rows.append("|---|" + "---|" * len(heads))
         for law in laws:
-            rows.append(f"| {law} | " + " | ".join(f"{e['edge']:.2f}" for e in mine if e["law"] == law) + " |")
+            rows.append(f"| {law} | " + " | ".join(f"{e['edge']:.2f} ({100 * e['overlap']:.1f} %)" for e in mine if e["law"] == law) + " |")
     small = [e for e in edges if e["overlap"] < 0.15 and "e 0.5" in e["law"] and "unlimited" not in e["law"]]
     lowest = min(small, key=lambda e: e["edge"])
     rows.append(f"\nLowest with e = 0.5, to 10 % overlap: {lowest['edge']:.2f} ({lowest['law']}, {lowest['packing']}"

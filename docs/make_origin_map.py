@@ -35,8 +35,8 @@ def program(arguments, name):
 
 
 def turnover_table():
-    rows = ["| L_d = L_b mm | land mm | captured f | supply ratio | mean origin / L_d, first -> last sixth of the platform | local sd / L_d | profile rms on the map | x drift, second half |",
-            "|---|---|---|---|---|---|---|---|"]
+    rows = ["| L_d = L_b mm | land mm | captured f | supply ratio | mean origin / L_d, first -> last sixth of the platform | local sd / L_d | profile rms, best curve | its x drift | profile rms, best straight | its x drift |",
+            "|---|---|---|---|---|---|---|---|---|---|"]
     for length, land in ((1.6, 0.2), (3.2, 0.2), (6.4, 0.2), (3.2, 3.2), (3.2, 6.4), (3.2, 12.8)):
         name = f"turnover-{length}-{land}"
         r = program(["design", STUDY, "--budget", "1", "--set", "run.map_spreads=1", "--force", "--out", os.path.join(RUNS, name),
@@ -44,14 +44,15 @@ def turnover_table():
                      "--set", f'machine.land="{land} mm"',
                      "--set", f'target.footprint.x=["{length / 2} mm", "{length} mm"]'], name)
         if r is None or r["predicted"]["turnover"] is None:
-            rows.append(f"| {length} | {land} | not measured | | | | | |")
+            rows.append(f"| {length} | {land} | not measured | | | | | | | |")
             continue
-        p, t = r["predicted"], r["predicted"]["turnover"]
+        p, straight, t = r["predicted"], r["straight"], r["predicted"]["turnover"]
         mean, sd = t["origin_mean"], t["origin_deviation"]
         rows.append(f"| {length} | {land} | {p['capture_fraction']:.2f} | {p['supply_ratio']:.2f} | "
                     + " ".join("–" if m is None else f"{m:.2f}" for m in mean)
                     + f" | {min(s for s in sd if s is not None):.2f}-{max(s for s in sd if s is not None):.2f} | {p['misfit']['value']:.3f} (floor {p['misfit']['noise_floor']:.3f}) | "
-                      f"{p['x_drift']['value']:.3f} (floor {p['x_drift']['noise_floor']:.3f}) |")
+                      f"{p['x_drift']['value']:.3f} (floor {p['x_drift']['noise_floor']:.3f}) | {straight['misfit']['value']:.3f} | "
+                      f"{straight['x_drift']['value']:.3f} (floor {straight['x_drift']['noise_floor']:.3f}) |")
     return "\n".join(rows)
 
 
@@ -72,10 +73,15 @@ def evidence_table():
         if extra and "light" not in sys.argv and not os.path.exists(os.path.join(RUNS, "light-" + stem + ".json")):
             continue
         designed = program(["design", study, "--force", "--out", os.path.join(RUNS, "design-" + stem)], "design-" + stem)
+        if designed is None:
+            rows.append(f"| {label} | not measured | | | | | |")
+            continue
         folder = os.path.join(RUNS, "design-" + stem, "result.json")
         if extra:
             # the same partition, spread with the light powder on a bed of its own
             dem = program(["evaluate", study, "--fidelity", "full", "--design", folder, "--seed", "77", *extra], "light-" + stem)
+            if dem is None:
+                continue
             profile, beds, drift, f = dem["profile"]["gi"], 1, dem["x_drift"]["value"], dem["capture_fraction"]
             error = dem["profile"]["standard_error"]
         else:
@@ -95,6 +101,8 @@ def beds_table():
     """Standard errors of single strips against what lies between ten of them."""
     beds = [program(["evaluate", STUDY, "--fidelity", "map", "--set", "run.map_spreads=1", "--seed", str(seed)], f"bed-{seed}")
             for seed in range(11, 21)]
+    if None in beds:
+        return "*Not measured yet with the present engine: the command above fills this table.*"
     weight = beds[0]["profile"]["weight"]
     counting = [b for b, w in enumerate(weight) if w]
 
@@ -131,8 +139,8 @@ def main():
         begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
         head, rest = text.split(begin)
         text = head + begin + "\n" + table() + "\n" + end + rest.split(end)[1]
-    with open(page, "w") as file:
-        file.write(text)
+        with open(page, "w") as file:  # each table as it comes: the next may take an hour
+            file.write(text)
 
 
 main()

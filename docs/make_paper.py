@@ -8,7 +8,6 @@ the program (a smaller bed while working on this page). Needs nothing but Python
 """
 import argparse
 import json
-import math
 import os
 import shutil
 import subprocess
@@ -77,9 +76,8 @@ def fits(r):
 
 def rotation(r):
     v = r["figures"]["velocity"]
-    w, s, n = v["vorticity_per_s"], v["vorticity_deviation_per_s"], v["instants"]
-    error = s / math.sqrt(n) if s is not None and n else None
-    return v, w, error
+    # the instants lie within a part of one turn of the heap: their deviation is quoted, not that over sqrt(n)
+    return v, v["vorticity_per_s"], v["vorticity_deviation_per_s"]
 
 
 def with_heap(r):
@@ -99,7 +97,7 @@ def summary_text(r):
     v, w, error = rotation(r)
     if w is not None and error is not None:
         sense = "rolls forward" if w < 0 else "rolls backward"
-        rows.append(f"| 5 | the powder circulates in the x-z plane | mean vorticity {w:.0f} ± {error:.0f} 1/s: {sense} | "
+        rows.append(f"| 5 | the powder circulates in the x-z plane | mean vorticity {w:.0f} ± {error:.0f} 1/s between instants: {sense} | "
                     f"{'agrees' if abs(w) > 3 * error else 'no circulation found'} |")
     heap = with_heap(r)
     if heap:
@@ -109,9 +107,11 @@ def summary_text(r):
                     f"(blade at {first['blade_x_m'] * 1e3:.1f} mm) to {last['lacey_in_slices']:.2f} "
                     f"({last['blade_x_m'] * 1e3:.1f} mm) | {'agrees' if grows else 'does not agree'} |")
         values = [x for x in r["figures"]["mixing"]["shown"][-1]["slices"]["lacey"] if x is not None]
-        if len(values) > 1:
-            rows.append(f"| 6 | mixing varies along y | slices between {min(values):.2f} and {max(values):.2f} at the last instant drawn; "
-                        "only slices that hold both powders can be judged | see below |")
+        rows.append(f"| 6 | mixing varies along y | only {len(values)} of {len(r['figures']['mixing']['shown'][-1]['slices']['lacey'])} slices "
+                    "hold both powders at the last instant drawn: the ramp of this bed is too narrow | cannot be judged |"
+                    if len(values) < 4 else
+                    f"| 6 | mixing varies along y | slices between {min(values):.2f} and {max(values):.2f} at the last instant drawn | "
+                    f"{'agrees' if max(values) > 1.5 * min(values) else 'hardly'} |")
     melted, mass = fits(r).get("mass_fraction_a_melted"), fits(r).get("mass_fraction_a")
     if melted and mass:
         change = 100 * (melted["slope_per_m"] / line["slope_per_m"] - 1)
@@ -148,7 +148,7 @@ def velocity_text(r):
     return text + (f"\n\nMean of {v['instants']} instants while the blade covers the platform's first half, cells of "
                    f"{v['cell_m'] * 1e6:.0f} um. The fastest cell moves at {v['fastest_m_s'] / v['blade_speed_m_s']:.2f} of the blade's "
                    f"speed. Circulation {v['circulation_m2_s'] * 1e6:.3g} mm²/s over {v['area_m2'] * 1e6:.3f} mm², that is a mean "
-                   f"vorticity of {w:.0f} ± {error:.0f} 1/s (standard error; {v['vorticity_deviation_per_s']:.0f} between instants): "
+                   f"vorticity of {w:.0f} ± {error:.0f} 1/s (between instants, which lie within one turn and are not independent): "
                    f"{'clockwise, the heap rolls forward' if w < 0 else 'anticlockwise'}, one turn in "
                    f"{v['turn_length_m'] * 1e3:.2f} mm of the blade's way.")
 
@@ -177,7 +177,11 @@ def line_text(r):
              f"{fit['r_squared']:.3f}. A partition whose powder were mixed along x and not at all across would give 1/({span * 1e3:.2f} mm) "
              f"= {line['unmixed_slope_per_m'] * 1e-3:.2f} per mm; ours has {100 * ratio:.0f} % of it. To compare with another bed, take "
              f"slopes as shares of 1/(L_d tan 5°), never per mm.")
-    return text
+    middle = 0.5 * (line["partition_y_low_m"] + line["partition_y_high_m"])
+    near = [((y - middle) / span, g, s) for y, g, s in zip(line["y_m"], line["gi"], line["standard_error"])
+            if g is not None and s is not None and abs(y - middle) <= span]
+    text += "\n\nThe shape, free of the bed's size (y from the partition's middle):\n\n| y / (L_d tan 5°) | GI ± standard error |\n|---|---|\n"
+    return text + "\n".join(f"| {y:+.2f} | {g:.2f} ± {s:.2f} |" for y, g, s in near)
 
 
 def melt_text(r):

@@ -17,6 +17,7 @@ struct ConfirmedDesign {
     std::vector<double> expected, expected_variance, expected_drift, expected_drift_variance;
     std::vector<Evaluation> confirmations;  ///< those with numbers
     std::vector<Layer> layers;              ///< of those
+    std::vector<Snapshot> snapshots;        ///< of the first of those
     GradationProfile mean;
     XDrift drift;
     Misfit misfit, drift_misfit;

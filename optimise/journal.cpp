@@ -270,9 +270,15 @@ int Journal::append(const Evaluation& evaluation, const std::vector<Layer>& laye
     const std::string path =
         fmt::format("{}/{:06}_{}.json", folder_, last_ + 1, to_string(evaluation.fidelity));
     const std::string aside = path + kAside;
-    write_flushed(aside, to_json(evaluation, layers).dump() + "\n");
-    if (std::rename(aside.c_str(), path.c_str()) != 0) fail("rename into place", path);
-    flush_folder(folder_);
+    try {
+        write_flushed(aside, to_json(evaluation, layers).dump() + "\n");
+        if (std::rename(aside.c_str(), path.c_str()) != 0) fail("rename into place", path);
+        flush_folder(folder_);
+    } catch (const std::runtime_error& error) {
+        if (!on_failure) throw;
+        on_failure(error.what());
+        return 0;
+    }
     return ++last_;
 }
 

@@ -4,6 +4,7 @@
 //   000012_full.json   number + fidelity; numbers count up and are never used twice
 // Undefined numbers are null in the file and NaN in memory.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ class Journal {
     /// (disk full, no permission); entries written before stay whole.
     int append(const Evaluation& evaluation, const std::vector<Layer>& layers = {});
     const std::string& folder() const { return folder_; }
+    /// When set, append() hands its failure to it and returns 0 instead of throwing: an evaluation that cost
+    /// minutes must not be lost with the disk.
+    std::function<void(const std::string& reason)> on_failure;
 
     /// Entries in the order written. Left-over aside files (a kill while writing) are passed over; a damaged
     /// entry throws std::runtime_error naming it.

@@ -80,6 +80,15 @@ void spread_between(const CrosscheckEngine& engine, std::size_t bin, double& squ
     degrees += count - 1;
 }
 
+/// Everything that is said of all beds together.
+void compare(Crosscheck& result) {
+    add_up(result.ours);
+    add_up(result.lammps);
+    result.speed_ratio = result.ours.seconds > 0 ? result.lammps.seconds / result.ours.seconds
+                                                 : std::numeric_limits<double>::quiet_NaN();
+    compare_gradation(result);
+}
+
 }  // namespace
 
 HeapShape heap_shape(const Snapshot& snapshot, double width) {
@@ -177,14 +186,20 @@ Crosscheck run_crosscheck(const Study& study, const CrosscheckOptions& options) 
     result.lammps.ranks_or_threads = options.ranks;
     result.weight = bin_weights(study);
     for (int b = 0; b < study.bins.count; ++b) result.y_m.push_back(study.bins.centre(b));
-    result.differences = lammps_differences(crosscheck_scene(study, options, study.seed), !options.study_law,
-                                            options.rigid_blade);
+    result.differences =
+        lammps_differences(crosscheck_scene(study, options, study.seed), options.rigid_blade);
     const auto tell = [&](const std::string& stage, double fraction) {
         if (options.progress) options.progress(stage, fraction);
     };
     tell("two-body forces", 0);
-    result.two_body =
-        compare_two_body(crosscheck_scene(study, options, study.seed), options.folder + "/two-body");
+    result.two_body = compare_two_body(crosscheck_scene(study, options, study.seed),
+                                       options.folder + "/two-body", nullptr, options.stop);
+    if (result.two_body.interrupted) {
+        result.health.status = "interrupted";
+        result.health.reason = "stopped among the single contacts";
+        compare(result);
+        return result;
+    }
     result.forces_agree = true;
     for (const TwoBodyCase& one : result.two_body.cases)
         result.forces_agree = result.forces_agree && one.error <= kTwoBodyTolerance;
@@ -207,6 +222,10 @@ Crosscheck run_crosscheck(const Study& study, const CrosscheckOptions& options) 
         const auto failed = [&](const RunHealth& health, const char* engine) {
             result.health = health;
             result.health.reason = fmt::format("{}, {}: {}", bed, engine, health.reason);
+            // what both engines have finished still counts
+            result.ours.runs.resize(k);
+            result.lammps.runs.resize(k);
+            compare(result);
             return result;
         };
         RunHealth health;
@@ -233,15 +252,19 @@ Crosscheck run_crosscheck(const Study& study, const CrosscheckOptions& options) 
         lammps.rigid_blade = options.rigid_blade;
         lammps.shots = {result.ours.runs.back().heap.blade_x};
         LammpsRun facts;
-        const SpreadResult there = run_lammps_stage(scene, stage, spread, lammps, &facts);
+        SpreadResult there;
+        try {
+            there = run_lammps_stage(scene, stage, spread, lammps, &facts);
+        } catch (const LammpsError& error) {
+            there.health.status = "failed";
+            there.health.reason = std::string(error.what()) + (error.mend.empty() ? "" : "; " + error.mend);
+            return failed(there.health, "LAMMPS");
+        }
         result.lammps.runs.push_back(run_of(study, design, there, heap_x));
         result.lammps.runs.back().seconds = facts.seconds;
         if (!there.health.ok()) return failed(there.health, "LAMMPS");
     }
-    add_up(result.ours);
-    add_up(result.lammps);
-    result.speed_ratio = result.ours.seconds > 0 ? result.lammps.seconds / result.ours.seconds : 0;
-    compare_gradation(result);
+    compare(result);
     return result;
 }
 

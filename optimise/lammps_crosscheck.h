@@ -58,7 +58,8 @@ struct CrosscheckEngine {
 };
 
 struct Crosscheck {
-    RunHealth health;  ///< of the first run that failed, else ok
+    RunHealth health;  ///< of the first run that failed, else ok; "failed": LAMMPS itself. The numbers below
+                       ///< are of the beds that both engines finished before
     TwoBodyResult two_body;
     CrosscheckEngine ours, lammps;
     std::vector<std::string> differences;  ///< of the laws, one sentence each
@@ -81,7 +82,7 @@ inline constexpr double kNoiseAllowed = 1.5;
 /// Where in the study the comparison stands: scene of one seed.
 Scene crosscheck_scene(const Study& study, const CrosscheckOptions& options, std::uint64_t seed);
 
-/// Both engines on the same beds. Throws LammpsError when LAMMPS is missing or fails.
+/// Both engines on the same beds. Throws LammpsError when LAMMPS is missing or fails on the single contacts.
 Crosscheck run_crosscheck(const Study& study, const CrosscheckOptions& options);
 
 /// Heap ahead of the blade in a snapshot; `width` modelled [m].

@@ -79,7 +79,7 @@ std::string lammps_deck(const Scene& scene, const Stage& stage, const LammpsDeck
     line(
         "# Types: 1 powder A, 2 powder B, 3 fixed rough grains. SI units. What its law cannot say as ours "
         "does:");
-    for (const std::string& difference : lammps_differences(scene, false, options.rigid_blade))
+    for (const std::string& difference : lammps_differences(scene, options.rigid_blade))
         line("#   " + difference);
     line(
         "# Every `run` after the first says `pre no`: fix wall/gran puts its damping through the tsuji "

@@ -65,8 +65,8 @@ class LammpsLaw {
 };
 
 /// Every way in which a LAMMPS run of a scene differs from ours on purpose or for want of a model, one
-/// sentence each. `common_law`: ours ran with spring rolling and plain Hertz walls, to be as near as can be.
-/// `rigid_blade`: LAMMPS's blade is as hard as the other walls.
-std::vector<std::string> lammps_differences(const Scene& scene, bool common_law, bool rigid_blade = false);
+/// sentence each. `scene` is what ours ran (crosscheck_scene makes it as near as can be). `rigid_blade`:
+/// LAMMPS's blade is as hard as the other walls.
+std::vector<std::string> lammps_differences(const Scene& scene, bool rigid_blade = false);
 
 }  // namespace gradwright

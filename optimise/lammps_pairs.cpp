@@ -440,7 +440,10 @@ class Account {
             std::find_if(cases_.begin(), cases_.end(), [&](const auto& c) { return c.name == name; });
         if (found == cases_.end()) found = cases_.insert(cases_.end(), {name, 0, 0, of, decisive});
         ++found->contacts;
-        found->error = worse(found->error, std::fabs(difference) / scale);
+        // without friction or damping there is nothing to be relative to, and nothing may be there
+        found->error = worse(found->error, scale != 0        ? std::fabs(difference) / scale
+                                           : difference == 0 ? 0
+                                                             : std::numeric_limits<double>::infinity());
     }
     std::vector<TwoBodyCase> take() { return std::move(cases_); }
 
@@ -448,30 +451,28 @@ class Account {
     std::vector<TwoBodyCase> cases_;
 };
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream)
-        throw std::filesystem::filesystem_error("cannot be written", file,
-                                                std::error_code(errno, std::generic_category()));
-}
-
 }  // namespace
 
-TwoBodyResult compare_two_body(const Scene& scene, const std::string& folder, const Scene* ours_scene) {
+TwoBodyResult compare_two_body(const Scene& scene, const std::string& folder, const Scene* ours_scene,
+                               const std::atomic<bool>* stop) {
     const LammpsProgram program = find_lammps(1);
     const LammpsLaw law(scene, false);
     const Laboratory laboratory(scene, law);
     Bench bench = make_bench(scene, laboratory, law);
     std::filesystem::create_directories(folder);
     const std::filesystem::path place(folder);
-    write_text(place / "pairs.data", data_text(scene, bench));
-    write_text(place / "in.pairs", deck_text(bench, law, laboratory.time_step()));
+    write_deck_file(place / "pairs.data", data_text(scene, bench));
+    write_deck_file(place / "in.pairs", deck_text(bench, law, laboratory.time_step()));
     LammpsRunOptions run;
     run.folder = folder;
     run.input = "in.pairs";
+    run.stop = stop;
     const LammpsRun ran = run_lammps(program, run);
+    if (ran.interrupted) {
+        TwoBodyResult nothing;
+        nothing.interrupted = true;
+        return nothing;
+    }
     const LammpsDump held = read_lammps_dump(place / "held.dump"),
                      moved = read_lammps_dump(place / "moved.dump"),
                      still = read_lammps_dump(place / "still.dump");

@@ -35,6 +35,7 @@ struct TwoBodyResult {
     int bonds_beyond = 0, bonds_held_beyond = 0;
     std::string version;
     double seconds = 0;
+    bool interrupted = false;  ///< stopped before LAMMPS had answered: no cases
 };
 
 /// LAMMPS lets go of a bond where the pull is largest (s^3 = 3/4), which is where it breaks under a dead
@@ -48,6 +49,7 @@ inline constexpr double kTwoBodyTolerance = 1e-9;
 /// Compares the law of `scene` (materials, walls, softening, interaction) between the engines. Deck, data and
 /// dumps go to `folder`. `ours`: another scene for our side alone, to see that a difference is seen; null:
 /// the same. Throws LammpsError.
-TwoBodyResult compare_two_body(const Scene& scene, const std::string& folder, const Scene* ours = nullptr);
+TwoBodyResult compare_two_body(const Scene& scene, const std::string& folder, const Scene* ours = nullptr,
+                               const std::atomic<bool>* stop = nullptr);
 
 }  // namespace gradwright

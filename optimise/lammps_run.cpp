@@ -180,6 +180,15 @@ LammpsRun run_lammps(const LammpsProgram& program, const LammpsRunOptions& optio
     return run;
 }
 
+void write_deck_file(const std::string& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream)
+        throw fs::filesystem_error("cannot be written", file,
+                                   std::error_code(errno, std::generic_category()));
+}
+
 const std::vector<double>& LammpsDump::column(const std::string& name) const {
     const auto found = std::find(columns.begin(), columns.end(), name);
     if (found == columns.end()) throw LammpsError("a LAMMPS dump lacks the column '" + name + "'", {});

@@ -45,6 +45,9 @@ struct LammpsRun {
 /// not usable.
 LammpsRun run_lammps(const LammpsProgram& program, const LammpsRunOptions& options);
 
+/// Writes a deck or a data file. Throws std::filesystem::filesystem_error.
+void write_deck_file(const std::string& file, const std::string& text);
+
 /// One instant of a text dump (dump custom): the columns by name, sorted by id.
 struct LammpsDump {
     long step = 0;

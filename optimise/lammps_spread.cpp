@@ -23,15 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_text(const fs::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream)
-        throw fs::filesystem_error("cannot be written", file,
-                                   std::error_code(errno, std::generic_category()));
-}
-
 std::string file_text(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -124,9 +115,9 @@ SpreadResult run_lammps_stage(const Scene& scene, const Stage& stage, const Spre
 
     const fs::path folder = lammps.folder;
     fs::create_directories(folder);
-    write_text(folder / kLammpsDeck,
-               lammps_deck(scene, stage, {lammps.ranks, lammps.shots, lammps.rigid_blade}));
-    write_text(folder / kLammpsBed, lammps_bed(scene, stage));
+    write_deck_file(folder / kLammpsDeck,
+                    lammps_deck(scene, stage, {lammps.ranks, lammps.shots, lammps.rigid_blade}));
+    write_deck_file(folder / kLammpsBed, lammps_bed(scene, stage));
     LammpsRunOptions run;
     run.folder = lammps.folder;
     run.input = kLammpsDeck;

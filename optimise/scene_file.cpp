@@ -408,9 +408,9 @@ void read_interaction(TomlReader& reader, Section& root, Study& study) {
     interaction.friction_cap = cap == "thornton" ? FrictionCap::thornton
                                : cap == "normal" ? FrictionCap::normal
                                                  : FrictionCap::edem_repulsive;
-    const std::string rolling =
-        section.choice("rolling_model", {"constant_torque", "edem", "spring", "none"}, "constant_torque",
-                       "our default: the paper's model is not named");
+    const std::string rolling = section.choice(
+        "rolling_model", {"constant_torque", "edem", "spring", "none"}, "constant_torque",
+        "our default: half of `edem` for equal grains; EDEM, the paper's software, uses `edem`");
     interaction.rolling_model = rolling == "none"     ? RollingModel::none
                                 : rolling == "spring" ? RollingModel::spring
                                 : rolling == "edem"   ? RollingModel::edem

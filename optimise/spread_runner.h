@@ -17,7 +17,9 @@ class SpreadRunner {
     /// may lead a search there.
     SpreadResult spread(const Scene& scene, const PartitionCurve* partition, const std::string& stage,
                         int snapshots = 0);
-    bool stopped() const { return options_.stop && options_.stop->load(); }
+    bool stopped() const { return halted_ || (options_.stop && options_.stop->load()); }
+    /// No further spread is to begin.
+    void halt() { halted_ = true; }
     const RunOptions& options() const { return options_; }
 
     int map_spreads = 0,
@@ -27,6 +29,7 @@ class SpreadRunner {
 
   private:
     RunOptions options_;
+    bool halted_ = false;
 };
 
 /// Health into an evaluation's words when the run ended without numbers.

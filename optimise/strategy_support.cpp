@@ -54,6 +54,10 @@ StrategyRun::StrategyRun(const Study& given, const RunOptions& options)
     result.threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     result.host_cores = int(std::thread::hardware_concurrency());
     result.host_isa = instruction_set();
+    journal.on_failure = [this](const std::string& reason) {
+        runner.halt();  // what is there is reported; more could not be kept
+        if (result.unwritten.empty()) result.unwritten = reason;
+    };
     result.given_used.emplace_back("threads", fmt::format("{} -> {}", options.threads, result.threads));
     result.given_used.emplace_back("run.map_spreads",
                                    fmt::format("{} -> {}", given.map_spreads, study.map_spreads));
@@ -103,7 +107,7 @@ bool StrategyRun::confirm(ConfirmedDesign& round) {
         last_failure_ = fmt::format("{}: {}", evaluation.health.status, evaluation.health.reason);
         return false;
     }
-    if (result.snapshots.empty()) result.snapshots = full.last().snapshots;
+    if (round.snapshots.empty()) round.snapshots = full.last().snapshots;
     result.beds.push_back(full.last().bed);
     round.confirmations.push_back(evaluation);
     round.layers.push_back(full.last().layer);
@@ -146,6 +150,11 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
     result.design = round.design;
     result.predicted = round.predicted;
     result.confirmations = round.confirmations;
+    result.snapshots = round.snapshots;
+    for (const ConfirmedDesign& other : rounds)
+        if (&other != &round)
+            result.superseded.insert(result.superseded.end(), other.confirmations.begin(),
+                                     other.confirmations.end());
     result.confirmed = round.mean;
     result.confirmed_drift = round.drift;
     result.misfit = round.misfit;
@@ -171,9 +180,8 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
                         result.coverage, study.objective.min_coverage));
 
     if (round.confirmations.empty()) {
-        result.misfit.tolerance = study.objective.tolerance;
-        result.misfit.norm = study.objective.norm;
-        result.drift_misfit.tolerance = study.objective.x_drift_tolerance;
+        result.misfit = round.predicted.misfit;
+        result.drift_misfit = round.predicted.drift_misfit;
         const bool failed = !runner.stopped() && !last_failure_.empty();
         result.termination = runner.stopped() ? "interrupted" : failed ? "failed" : "budget";
         result.message =
@@ -209,9 +217,9 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
                 : "The tolerance lies inside the interval: raise run.max_spreads for more beds.");
     }
     if (round.verdict != Verdict::met && !limit.empty()) result.message += " " + limit;
-    result.termination = runner.stopped()                      ? "interrupted"
+    result.termination = round.verdict == Verdict::met         ? "converged"
+                         : runner.stopped()                    ? "interrupted"
                          : round.verdict == Verdict::undecided ? "budget"
-                         : round.verdict == Verdict::met       ? "converged"
                          : spreads_left() > 0                  ? "converged"
                                                                : "budget";
     return std::move(result);

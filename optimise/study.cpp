@@ -8,7 +8,7 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
     scene.width = strip ? study.strip_width : study.dispenser_width;
     // A map lives on y-homogeneity: no side walls, whatever the machine has.
     if (strip) scene.sides = Sides::periodic;
-    scene.land = design.land > 0 ? design.land : study.scene.land;
+    scene.land = design.land >= 0 ? design.land : study.scene.land;
     // Dispenser and platform are equally wide, so the ratio of areas is that of the lengths (physics.md 1.3).
     scene.dose_height =
         design.dosage_factor * scene.layer_thickness * scene.platform_length / scene.dispenser_length;

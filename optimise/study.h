@@ -91,7 +91,7 @@ struct Design {
     PartitionCurve partition;
     std::array<double, 2> fill_fraction = {1, 1};
     double dosage_factor = 2;
-    double land = 0;                                         ///< [m]
+    double land = -1;                                        ///< [m]; below 0: the study's
     double footprint_offset = 0;                             ///< [m]
     std::vector<std::pair<std::string, double>> parameters;  ///< named numbers of the family (deg, m)
 };

@@ -304,6 +304,9 @@ void read_design_space(TomlReader& reader, Section& root, Study& study) {
         const std::string label = i == 0 ? "A" : "B";
         design.fill_fraction[i] = fill.variable(label, "fill_fraction." + label, "", design.fill_fraction[i],
                                                 "filled to the rim", Range::above_to(0, 1));
+        if (design.fill_fraction[i].free)
+            fill.problem(fill.find(label), label, "is not searched: it must be one value",
+                         "take the middle of the range, or try several values with `evaluate --set`");
     }
     fill.finish();
     design.dosage_factor = space.variable("dosage_factor", "dosage_factor", "", design.dosage_factor,

@@ -42,9 +42,12 @@ struct StudyResult {
     std::uint64_t seed = 1;
     std::vector<std::pair<std::string, std::string>> given_used;  ///< option, "given -> used"
     std::vector<std::string> warnings;
+    std::string unwritten;  ///< why the journal could not be kept, and the search was ended; empty: it was
+    /// Confirmations of designs that were given up afterwards.
+    std::vector<Evaluation> superseded;
     // raw material for pictures
     std::vector<Layer> map_layers;
-    std::vector<Snapshot> snapshots;  ///< of the first confirmation
+    std::vector<Snapshot> snapshots;  ///< of the first confirmation of `design`
     std::vector<BedFacts> beds;
     std::string host_isa;
     int host_cores = 0, threads = 0;

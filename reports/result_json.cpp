@@ -41,6 +41,9 @@ json drift_profile_json(const XDrift& drift) {
 
 json evaluation_summary(const Study& study, const Evaluation& evaluation) {
     const bool defined = evaluation.health.ok() && !evaluation.profile.gi.empty();
+    // the kinematic picture lays nothing, and a spread that failed was not measured
+    const bool laid = evaluation.health.ok() && evaluation.fidelity != Fidelity::kinematic;
+    const auto measured = [laid](double value) { return laid ? number(value) : json(nullptr); };
     json turnover = nullptr;
     if (!evaluation.origin_mean.empty())
         turnover = {{"origin_mean", numbers(evaluation.origin_mean)},
@@ -58,11 +61,11 @@ json evaluation_summary(const Study& study, const Evaluation& evaluation) {
             {"y_m", numbers(evaluation.profile.y_m)},
             {"gi", numbers(evaluation.profile.gi)},
             {"standard_error", numbers(evaluation.profile.standard_error)},
-            {"capture_fraction", number(evaluation.capture_fraction)},
-            {"supply_ratio", number(evaluation.supply_ratio)},
-            {"coverage", number(evaluation.coverage)},
-            {"waste_fraction", number(evaluation.waste_fraction)},
-            {"packing_fraction", number(evaluation.packing_fraction)},
+            {"capture_fraction", measured(evaluation.capture_fraction)},
+            {"supply_ratio", measured(evaluation.supply_ratio)},
+            {"coverage", measured(evaluation.coverage)},
+            {"waste_fraction", measured(evaluation.waste_fraction)},
+            {"packing_fraction", measured(evaluation.packing_fraction)},
             {"grains", evaluation.grains},
             {"steps", evaluation.steps},
             {"grain_steps", number(evaluation.grain_steps)},
@@ -231,7 +234,7 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
             {"profile", profile_json(result)},
             {"coverage", found(result.coverage)},
             {"waste_fraction", found(result.waste_fraction)},
-            {"waste_a_share", found(result.waste_a_share)},
+            {"waste_a_share", found(result.confirmations.empty() ? kUndefined : result.waste_a_share)},
             {"packing_fraction", found(result.packing_fraction)},
             {"spreads", {{"map", result.spreads_map}, {"full", result.spreads_full}}},
             {"predicted", evaluation_summary(study, result.predicted)},
@@ -286,7 +289,10 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
     object["map"] = map;
     if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
     object["x_drift"] = drift;
-    object["waste_a_share"] = number(evaluation.waste_a_share);
+    // a strip's grains carry no powder
+    const bool labelled = evaluation.health.ok() &&
+                          (evaluation.fidelity == Fidelity::full || evaluation.fidelity == Fidelity::lammps);
+    object["waste_a_share"] = labelled ? number(evaluation.waste_a_share) : json(nullptr);
     object["objective"] = number(evaluation.objective);
     object["kinematic_error_bound"] = number(evaluation.kinematic_error_bound);
     object["max_overlap_ratio"] = number(evaluation.health.max_overlap_ratio);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "reports/hdf5_file.h"
+#include "reports/map_file.h"
 #include "reports/provenance.h"
 #include "reports/result_json.h"
 #include "reports/safe_write.h"
@@ -144,6 +145,11 @@ void write_variables(Table& table, H5Writer& file, const Study& study, const Stu
         file.attach_scale(std::string("/variables/") + set, "/variables/name", 0);
 }
 
+/// The kinematic picture lays nothing, and a spread that failed was not measured.
+double laid(const Evaluation& evaluation, double value) {
+    return evaluation.health.ok() && evaluation.fidelity != Fidelity::kinematic ? value : kUndefined;
+}
+
 void write_evaluations(Table& table, H5Writer& file, const StudyResult& result, const Axis& axis,
                        std::size_t bins) {
     std::vector<std::pair<std::string, const Evaluation*>> rows;
@@ -151,6 +157,7 @@ void write_evaluations(Table& table, H5Writer& file, const StudyResult& result, 
     if (result.straight) rows.emplace_back("straight", &*result.straight);
     if (!result.predicted.profile.gi.empty()) rows.emplace_back("predicted", &result.predicted);
     for (const Evaluation& evaluation : result.confirmations) rows.emplace_back("confirmation", &evaluation);
+    for (const Evaluation& evaluation : result.superseded) rows.emplace_back("superseded", &evaluation);
 
     const std::string root = "/evaluations/";
     std::vector<std::string> role, fidelity, status, reason, hash;
@@ -209,13 +216,13 @@ void write_evaluations(Table& table, H5Writer& file, const StudyResult& result, 
          [](const Evaluation& e) { return e.misfit.noise_floor; }},
         {"x_drift", "1", "x drift, rms over bins", [](const Evaluation& e) { return e.drift.value; }},
         {"capture_fraction", "1", "solid laid over solid dosed",
-         [](const Evaluation& e) { return e.capture_fraction; }},
-        {"supply_ratio", "1", "supply ratio", [](const Evaluation& e) { return e.supply_ratio; }},
-        {"coverage", "1", "coverage", [](const Evaluation& e) { return e.coverage; }},
+         [](const Evaluation& e) { return laid(e, e.capture_fraction); }},
+        {"supply_ratio", "1", "supply ratio", [](const Evaluation& e) { return laid(e, e.supply_ratio); }},
+        {"coverage", "1", "coverage", [](const Evaluation& e) { return laid(e, e.coverage); }},
         {"waste_fraction", "1", "overflow over dosed solid",
-         [](const Evaluation& e) { return e.waste_fraction; }},
+         [](const Evaluation& e) { return laid(e, e.waste_fraction); }},
         {"packing_fraction", "1", "packing of the layer",
-         [](const Evaluation& e) { return e.packing_fraction; }},
+         [](const Evaluation& e) { return laid(e, e.packing_fraction); }},
         {"grains", "1", "mobile grains", [](const Evaluation& e) { return double(e.grains); }},
         {"steps", "1", "time steps", [](const Evaluation& e) { return double(e.steps); }},
         {"grain_steps", "1", "awake grain-steps", [](const Evaluation& e) { return e.grain_steps; }},
@@ -292,8 +299,10 @@ void write_result(Table& table, H5Writer& file, const Study& study, const StudyR
                "corners (x, y) of the partition, A on the left");
     table.grid(root + "partition_points_in_dispenser", inside, {inside.size() / 2, 2}, "m",
                "corners (x, y) of the partition, ends on the dispenser's walls");
-    const GradationMap& map =
-        result.confirmations.empty() ? result.predicted.map : result.confirmations.front().map;
+    std::vector<const GradationMap*> maps;
+    for (const Evaluation& confirmation : result.confirmations) maps.push_back(&confirmation.map);
+    if (maps.empty()) maps.push_back(&result.predicted.map);
+    const GradationMap map = mean_map(maps);
     if (!map.gi.empty() && map.gi.size() == map.x_m.size() * map.y_m.size()) {
         table.numbers(root + "map_x", map.x_m, "m", "cell centre along the platform");
         table.numbers(root + "map_y", map.y_m, "m", "cell centre across the platform");
@@ -317,8 +326,8 @@ void write_result(Table& table, H5Writer& file, const Study& study, const StudyR
         table.scalar(root + name, value(m.value), "1", text);
         table.scalar(root + name + "_debiased", value(m.debiased), "1",
                      "the same after the noise is taken off");
-        table.scalar(root + name + "_interval_low", value(m.interval_low), "1", "95 % interval, lower");
-        table.scalar(root + name + "_interval_high", value(m.interval_high), "1", "95 % interval, upper");
+        table.scalar(root + name + "_interval_low", value(m.interval_low), "1", "lower bound, 95 %");
+        table.scalar(root + name + "_interval_high", value(m.interval_high), "1", "upper bound, 95 %");
         table.scalar(root + name + "_noise_floor", value(m.noise_floor), "1", "noise floor");
         table.scalar(root + name + "_tolerance", m.tolerance, "1", "tolerance");
     };
@@ -328,7 +337,8 @@ void write_result(Table& table, H5Writer& file, const Study& study, const StudyR
     table.scalar(root + "supply_ratio", result.supply_ratio, "1", "supply ratio");
     table.scalar(root + "coverage", result.coverage, "1", "share of cells deeper than half the mean");
     table.scalar(root + "waste_fraction", result.waste_fraction, "1", "overflow over dosed solid");
-    table.scalar(root + "waste_a_share", result.waste_a_share, "1", "share of A in the overflow");
+    table.scalar(root + "waste_a_share", result.confirmations.empty() ? kUndefined : result.waste_a_share,
+                 "1", "share of A in the overflow");
     table.scalar(root + "packing_fraction", result.packing_fraction, "1", "packing of the layer");
     table.scalar(root + "spreads_map", std::int64_t(result.spreads_map), "1",
                  "spreads spent on the origin map");

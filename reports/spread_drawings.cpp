@@ -132,7 +132,8 @@ std::string gi_line_svg(const Study& study, const Evaluation& evaluation, const 
     const std::vector<double> unmixed_y = {0, figures.y_low * 1e3, figures.y_high * 1e3, y_end};
     const std::vector<double> unmixed =
         rises ? std::vector<double>{0, 0, 1, 1} : std::vector<double>{1, 1, 0, 0};
-    axes.curve(unmixed_y, unmixed, {.colour = "#777", .width = 1.4, .dash = "6 4"});
+    const bool sloped = std::isfinite(figures.unmixed_slope);
+    if (sloped) axes.curve(unmixed_y, unmixed, {.colour = "#777", .width = 1.4, .dash = "6 4"});
     double at = top + height + 60;
     if (!figures.fits.empty()) {
         const LinearFit& line = figures.fits.front().line;
@@ -145,9 +146,10 @@ std::string gi_line_svg(const Study& study, const Evaluation& evaluation, const 
                                 line.slope * 1e-3, line.r_squared));
         at += 19;
     }
-    legend_line(figure, left, at, {.colour = "#777", .width = 1.4, .dash = "6 4"},
-                fmt::format("the partition, mixed along x and not at all across: {:.2f} per mm",
-                            figures.unmixed_slope * 1e-3));
+    if (sloped)
+        legend_line(figure, left, at, {.colour = "#777", .width = 1.4, .dash = "6 4"},
+                    fmt::format("the partition, mixed along x and not at all across: {:.2f} per mm",
+                                figures.unmixed_slope * 1e-3));
     legend_line(figure, left, at + 19, {.colour = kColourA, .width = 1.4},
                 fmt::format("bins of {:.0f} um, simultaneous 95 % band", study.bins.width * 1e6));
     figure.discs(std::vector<double>{left + 13}, std::vector<double>{at + 34}, std::vector<double>{3.2},

@@ -44,10 +44,14 @@ void measure_line(const Study& study, const Design& design, const Layer& layer,
     const double extent = out.y_high - out.y_low, d50 = study.scene.powder[0].size.d50;
     const double middle = 0.5 * study.scene.dispenser_length;
     const bool rises = design.partition.on_side_a(middle, out.y_high + extent + d50);
-    out.unmixed_slope = (rises ? 1 : -1) / extent;
-    const double bin = std::clamp(extent / kFineBins, 0.5 * d50, study.bins.width);
+    // a level partition has no slope, only a step
+    out.unmixed_slope = extent > 0 ? (rises ? 1 : -1) / extent : std::numeric_limits<double>::quiet_NaN();
+    const double bin =
+        std::clamp(extent / kFineBins, std::min(0.5 * d50, study.bins.width), study.bins.width);
     const BinGrid grid{bin, static_cast<int>(std::floor(study.dispenser_width / bin + 1e-9))};
     out.fine = plain_profile(layer, carried_labels(layer), footprint_of(study, design), grid, study.seed);
+    for (double& s : out.fine.standard_error)
+        s *= std::sqrt(kBedsOverBlocksPlain);  // one bed, as in its bins
     const std::array<Material, 2> alloys = {study.scene.powder[0].material, study.scene.powder[1].material};
     if (composition) {
         const double factor = band_factor(out.fine);

@@ -31,7 +31,7 @@ const char* norm_name(Norm norm) {
 }
 
 std::string against(const Misfit& misfit) {
-    return fmt::format("{} (95 % interval {} to {} after noise, floor {}), tolerance {}",
+    return fmt::format("{} (95 % bounds {} and {} after noise, floor {}), tolerance {}",
                        gi_text(misfit.value), gi_text(misfit.interval_low), gi_text(misfit.interval_high),
                        gi_text(misfit.noise_floor), gi_text(misfit.tolerance));
 }
@@ -146,6 +146,13 @@ Wording wording(const Study& study, const StudyResult& result) {
                 break;
         }
         words.verdict = fmt::format("{}; {}.", misfit, drift);
+        const auto counting =
+            std::count_if(result.weight.begin(), result.weight.end(), [](double w) { return w > 0; });
+        if (counting < static_cast<std::ptrdiff_t>(result.weight.size()))
+            words.verdict += fmt::format(
+                " Judged in {} of {} bins: not beside the {}, nor where the study says don't care.", counting,
+                result.weight.size(),
+                study.scene.sides == Sides::periodic ? "periodic seam, where A meets B again" : "side walls");
         words.verdict.front() = static_cast<char>(std::toupper(words.verdict.front()));
     }
     if (measured) {
@@ -158,10 +165,10 @@ Wording wording(const Study& study, const StudyResult& result) {
                                  n, n == 1 ? "" : "s", n == 1 ? "it" : "them", n == 1 ? " " : "s ");
         for (std::size_t i = 0; i < n; ++i)
             words.sure += fmt::format("{}{}", i ? ", " : "", result.confirmations[i].seed);
-        words.sure +=
-            fmt::format(" that the search never saw; standard errors from {}.",
-                        n >= 3 ? "the replicates"
-                               : "a block bootstrap over x (three replicates would give them directly)");
+        words.sure += fmt::format(" that the search never saw; standard errors from {}.",
+                                  n >= 3 ? "the replicates"
+                                         : "blocks along x, widened for the chance of a single bed (three "
+                                           "beds would give them directly)");
     } else {
         words.sure = "No confirming spread with both powders in it: every number here is a prediction.";
     }

@@ -39,11 +39,4 @@ const std::vector<Mutation>& mutations() {
     return all;
 }
 
-VerificationCases verify_all(const VerificationOptions& options) {
-    VerificationCases out;
-    for (const auto& rung : verification_ladder())
-        for (auto& c : rung.run(options)) out.push_back(std::move(c));
-    return out;
-}
-
 }  // namespace gradwright

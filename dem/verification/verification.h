@@ -79,7 +79,4 @@ struct Mutation {
 };
 const std::vector<Mutation>& mutations();
 
-/// All rungs in order.
-VerificationCases verify_all(const VerificationOptions& options);
-
 }  // namespace gradwright

@@ -79,7 +79,7 @@
   const spoken = { rmse: "rms misfit", mean_absolute: "mean absolute misfit", max: "largest misfit" };
   const proved = result.confirmations.length > 0;
   const norm_name = `${proved ? "Confirmed" : "Predicted"} ${spoken[result.misfit.norm] ?? "misfit"}`;
-  const interval = (m) => `true value ${gi(m.interval[0])} to ${gi(m.interval[1])} (95 %), noise floor ${gi(m.noise_floor)}, tolerance ${gi(m.tolerance)}`;
+  const interval = (m) => `95 % bounds ${gi(m.interval[0])} and ${gi(m.interval[1])}, noise floor ${gi(m.noise_floor)}, tolerance ${gi(m.tolerance)}`;
 
   if (result.warnings.length) page.append(h("div", { class: "warn", role: "note" }, h("strong", {}, "Before you rely on it"), h("ul", {}, result.warnings.map((w) => h("li", {}, w)))));
   page.append(h("div", { class: "grid", style: "margin-top:16px" },

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Opens what `design --out OUT` wrote with the readers that users have: h5py, VTK's vtkHDFReader, headless Chromium.
 
-    tests/browser/check_outputs.py OUT [--pictures FOLDER]
+    tests/browser/check_outputs.py OUT [--pictures FOLDER | --no-browser]
 
 Exit code 0 when everything opens, every dataset carries its unit, and the report shows its figures without a console error;
 `--pictures` keeps screenshots at desk and phone width. Needs python3-h5py, python3-vtk9 and chromium.
@@ -80,10 +80,13 @@ def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("out")
     options.add_argument("--pictures")
+    options.add_argument("--no-browser", action="store_true", help="files only, not the report")
     given = options.parse_args()
     print("results.h5:", check_hdf5(f"{given.out}/results.h5"), "datasets, all with units and long_name")
     for path in sorted(glob.glob(f"{given.out}/*.vtkhdf")):
         print(f"{os.path.basename(path)}:", check_vtk(path))
+    if given.no_browser:
+        return
     print("report.html:", check_report(f"{given.out}/report.html", given.pictures), "figures, no console error")
 
 

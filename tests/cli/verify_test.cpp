@@ -59,7 +59,7 @@ TEST(Verify, a_sound_law_is_green_and_the_exit_code_zero) {
 
 TEST(Verify, a_broken_law_is_red_by_name_and_the_exit_code_is_not_zero) {
     const Outcome outcome = verify("--only V1 --only V7 --law double --mutate lever_arm --quiet");
-    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.code, 4);
     EXPECT_THAT(outcome.out, HasSubstr("RED"));
     EXPECT_THAT(outcome.out, HasSubstr("instant of rolling"));
     EXPECT_THAT(outcome.out, HasSubstr("red, in V7"));

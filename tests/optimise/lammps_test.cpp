@@ -56,6 +56,13 @@ TEST_F(TwoBody, plain_pairs_with_little_restitution_and_unlike_stiffness_answer_
     EXPECT_EQ(expect_agreement(scene).size(), 16u);
 }
 
+TEST_F(TwoBody, without_damping_and_friction_there_is_nothing_and_both_say_so) {
+    Scene scene = scene_of_the_law();
+    scene.interaction.coefficient_of_restitution = 1;
+    scene.interaction.static_friction = 0;
+    expect_agreement(scene);
+}
+
 TEST_F(TwoBody, a_deck_of_another_law_is_found_out) {
     // The forces that LAMMPS computes from our deck, held against a law whose restitution is another one:
     // what a wrong conversion of the damping would look like.

@@ -194,6 +194,10 @@ TEST(MapStrategy, one_spread_in_all_is_a_prediction_and_says_so) {
     EXPECT_EQ(result.spreads_full, 0);
     EXPECT_EQ(result.spreads_map, 1);
     EXPECT_FALSE(result.predicted.profile.gi.empty());
+    // unproved numbers are the prediction's, not zeros that look perfect
+    EXPECT_GT(result.misfit.noise_floor, 0);
+    EXPECT_EQ(result.misfit.value, result.predicted.misfit.value);
+    EXPECT_EQ(result.drift_misfit.interval_high, result.predicted.drift_misfit.interval_high);
 }
 
 TEST(MapStrategy, pooled_strips_leave_room_for_the_confirmation) {
@@ -252,6 +256,26 @@ TEST(MapStrategy, a_stop_keeps_what_there_is) {
     EXPECT_EQ(result.termination, "interrupted");
     EXPECT_FALSE(result.predicted.profile.gi.empty());
     EXPECT_EQ(calls->full_seeds.size(), 1u);
+}
+
+TEST(MapStrategy, a_journal_that_cannot_be_kept_ends_the_search_with_what_there_is) {
+    char name[] = "/tmp/gradwright_strategy_XXXXXX";
+    RunOptions options;
+    options.journal_folder = mkdtemp(name);
+    auto calls = std::make_shared<Calls>();
+    const SpreadFunction heap = engine({}, calls);
+    options.spread = [&](const Scene& scene, const PartitionCurve* partition,
+                         const SpreadOptions& spread_options) {
+        if (partition) std::filesystem::remove_all(options.journal_folder);
+        return heap(scene, partition, spread_options);
+    };
+    Study study = coupon();
+    study.objective.tolerance = 0.012;  // undecided: there would be several confirmations
+    const StudyResult result = run_map_strategy(study, options);
+    EXPECT_NE(result.unwritten.find(name), std::string::npos) << result.unwritten;
+    EXPECT_EQ(result.spreads_full, 1);
+    EXPECT_EQ(result.confirmations.size(), 1u);  // it cost minutes, so it is reported
+    EXPECT_FALSE(result.confirmed.gi.empty());
 }
 
 TEST(MapStrategy, the_footprint_is_placed_on_the_map_without_a_spread_of_its_own) {
