@@ -59,12 +59,12 @@ std::vector<SceneProblem> validate(const Scene& s) {
     if (s.gap < 1.5 * d90 && s.gap >= d_max)
         warn(fmt::format("gap {:.0f} um is below 1.5 D90 ({:.0f} um): the layer will be thin and patchy",
                          s.gap * um, 1.5 * d90 * um));
-    if (s.rayleigh_fraction > 0.5 * kStabilityEdge)
-        warn(
-            fmt::format("time step {:.2g} of Rayleigh's is {:.2g} times the stability edge, {:.2g} (measured "
-                        "in a dense heap at "
-                        "3 % overlap); half of it is safe, 0.2 is the default",
-                        s.rayleigh_fraction, s.rayleigh_fraction / kStabilityEdge, kStabilityEdge));
+    if (const double edge = stability_edge_of(s.interaction); s.rayleigh_fraction > 0.5 * edge)
+        warn(fmt::format(
+            "time step {:.2g} of Rayleigh's is {:.2g} times the stability edge, {:.2g} (measured "
+            "in a dense heap at "
+            "3 % overlap at this restitution); half of it is safe: numerics.time_step.rayleigh_fraction",
+            s.rayleigh_fraction, s.rayleigh_fraction / edge, edge));
     // Tops of a rough surface: its mean plane lies 0.395 r below them, and heights are jittered by r/5.
     const double tops = (0.5 * 0.395 + 0.1) * s.roughness;
     if (s.substrate == Substrate::fused && s.gap < tops)

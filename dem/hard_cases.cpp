@@ -222,9 +222,10 @@ void partition_across(const SpreadOptions& options, HardCase& out) {
     out.pass = worst < 4 && mean > 0 && mean < 1;
 }
 
+template <int kTenths>
 void beyond_the_edge(const SpreadOptions& options, HardCase& out) {
     Scene s = small_scene();
-    s.rayleigh_fraction = 6;
+    s.rayleigh_fraction = 0.1 * kTenths;
     const SpreadResult r = run_spread(s, nullptr, options);
     out.happened = told(r);
     out.pass = r.health.status == "diverged" && r.layer.size() == 0 &&
@@ -336,7 +337,12 @@ const std::vector<HardCaseSpec>& hard_cases() {
         {"full-stiffness", "softening 1 (real Young's modulus), under 200 grains", "completes", false,
          completes<full_stiffness>},
         {"beyond-the-edge", "time step of 6 Rayleigh times", "diverged, with the factor beyond the edge",
-         false, beyond_the_edge},
+         false, beyond_the_edge<60>},
+        {"edge-x2.5",
+         "time step of 1 Rayleigh time, 2.5 times the edge, the largest that a study may ask for",
+         "diverged, with the factor beyond the edge", false, beyond_the_edge<10>},
+        {"edge-x1.5", "time step of 0.6 Rayleigh times, 1.5 times the edge",
+         "diverged, with the factor beyond the edge", false, beyond_the_edge<6>},
         {"bond-1000", "adhesion of Bond number 1000 at D50", "does_not_flow, or completes", false,
          strong_adhesion},
         {"nip",

@@ -217,7 +217,8 @@ SpreadResult spread_stage(const Scene& scene, const Stage& stage, const SpreadOp
         if (!engine.failed().empty()) {
             fail("diverged",
                  fmt::format("grains moved at more than {:.3g} m/s or lost their numbers ({}); {}",
-                             eo.speed_limit, engine.failed(), step_advice(scene.rayleigh_fraction)));
+                             eo.speed_limit, engine.failed(),
+                             step_advice(scene.rayleigh_fraction, scene.interaction)));
             break;
         }
         if (const long lost = lost_grains(engine, scene); lost > 0) {

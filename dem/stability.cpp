@@ -200,8 +200,15 @@ StabilityEdge stability_edge(const StabilitySetup& setup) {
     return out;
 }
 
-std::string step_advice(double rayleigh_fraction) {
-    const double times = rayleigh_fraction / kStabilityEdge;
+double stability_edge_of(const Interaction& interaction) {
+    const double e = interaction.coefficient_of_restitution;
+    if (e >= 1 && interaction.static_friction > 0) return kUndampedEdge;
+    if (e >= 0.5) return kStabilityEdge;
+    return kDampedEdge + (kStabilityEdge - kDampedEdge) * std::max(0.0, e - 0.05) / 0.45;
+}
+
+std::string step_advice(double rayleigh_fraction, const Interaction& interaction) {
+    const double times = rayleigh_fraction / stability_edge_of(interaction);
     return fmt::format("the time step is {:.3g} Rayleigh times, {:.2g} times the stability edge; {}",
                        rayleigh_fraction, times,
                        times > 1 ? "lower numerics.time_step.rayleigh_fraction (0.2 is the default)"

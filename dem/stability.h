@@ -50,15 +50,18 @@ struct StabilityRow {
 /// overlap and wedges at 3, 10 and 20 %.
 std::vector<StabilityRow> stability_table();
 
-/// Edge of the paper's law (e 0.5, friction 0.64, rolling models of the table) in a dense heap of equal
-/// grains whose largest overlap is the 3 % that a run warns of [T_R of the smallest grain]: the lowest
-/// measured is 0.44, of the rolling spring. Half of it is the largest time step that `validate` passes
-/// without a warning. Restitution 0.05 has 0.29; restitution 1 with friction less, see docs/hard-cases.md.
-inline constexpr double kStabilityEdge = 0.4;
+/// Edges in a dense heap of equal grains whose largest overlap is the 3 % that a run warns of [T_R of the
+/// smallest grain], rounded down from the table in docs/hard-cases.md (rolling models of that table, the
+/// lowest counts): e 0.5 and friction 0.64; e 0.05, where the normal dashpots alone reach their limit; e 1
+/// with friction, where nothing damps the tangential spring.
+inline constexpr double kStabilityEdge = 0.4, kDampedEdge = 0.28, kUndampedEdge = 0.2;
+/// The edge that holds for an interaction: those three, linear in e between 0.05 and 0.5. Half of it is the
+/// largest time step that `validate` passes without a warning.
+double stability_edge_of(const Interaction& interaction);
 
 /// "the time step is 6 Rayleigh times, 12 times the stability edge; lower
 /// numerics.time_step.rayleigh_fraction".
-std::string step_advice(double rayleigh_fraction);
+std::string step_advice(double rayleigh_fraction, const Interaction& interaction);
 
 /// Three grains (Vyas, Ottino, Lueptow, Umbanhowar, Comput. Phys. Commun. 310, 109524, 2025, arXiv
 /// 2410.14798): a small one lies near the top of the saddle between two large fixed ones that touch, rolls
