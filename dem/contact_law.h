@@ -183,8 +183,9 @@ inline ContactResponse<T> contact_law(const LawConstants& law, const LawFault& f
         // A contact's dashpot slows its slip, of mass 2/7 m*, at the rate 7/2 c/m*; a grain in a packing sums
         // six to eight. With predicted velocities a rate is stable to 1/dt (two-step Adams-Bashforth), so
         // each contact may take kDashpotShare of that. No effect below an overlap of 0.8 % r at e = 0.5 and
-        // 0.2 T_R, none at all as dt -> 0; without it the edge of the time step in a dense heap at 3 % is 0.2
-        // T_R, with it 0.46 T_R.
+        // 0.2 T_R, none at all as dt -> 0; without it the edge of the time step in a dense heap at 3 % is
+        // 0.20 T_R with the rolling spring and 0.28 with constant torque, with it 0.44 and 0.49
+        // (docs/hard-cases.md).
         const double share = fault.free_dashpot ? 1e9 : kDashpotShare;
         damping_t = smaller(damping_t, splat<T>(share / 3.5 / law.time_step) * c.mass);
     }

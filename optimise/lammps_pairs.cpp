@@ -512,24 +512,28 @@ TwoBodyResult compare_two_body(const Scene& scene, const std::string& folder, co
         const double floor = std::max(std::fabs(c.normal), c.pull_off);
         account.add(who + "elastic normal force", tc.normal - c.normal, floor,
                     law.adhesive() && !wall ? "the larger of force and pull-off force" : "force", !wall);
+        // Without damping or friction rounding is all there is; a millionth of the normal force is nothing
+        // too.
+        const double least = 1e-3 * floor;
         account.add(who + "damping normal force", (ta.normal - tc.normal) - (a.normal - c.normal),
-                    std::fabs(a.normal - c.normal), "damping force", !wall);
+                    std::max(std::fabs(a.normal - c.normal), least), "damping force", !wall);
         // a spring at nothing whose dashpot alone passes the limit: LAMMPS sets the force to zero
         if (length(a.tangential) < a.limit * (1 - 1e-9))
             account.add(who + "damping tangential force", length(ta.tangential - a.tangential),
-                        length(a.tangential), "damping force", !wall);
+                        std::max(length(a.tangential), least), "damping force", !wall);
         if (slipped) {
-            account.add(who + "sliding force", length(tb.tangential - b.tangential), length(b.tangential),
-                        "force", false);
+            account.add(who + "sliding force", length(tb.tangential - b.tangential),
+                        std::max(length(b.tangential), least), "force", false);
             account.add(who + "spring left by sliding", length(tc.tangential - c.tangential),
-                        length(c.tangential), "force", false);
+                        std::max(length(c.tangential), least), "force", false);
         } else {
             account.add(who + "tangential force, spring and dashpot", length(tb.tangential - b.tangential),
-                        length(b.tangential), "force", !wall);
+                        std::max(length(b.tangential), least), "force", !wall);
             account.add(who + "elastic tangential force", length(tc.tangential - c.tangential),
-                        length(c.tangential), "force", !wall);
+                        std::max(length(c.tangential), least), "force", !wall);
         }
-        account.add(who + "torque", length(tb.torque - b.torque), length(b.torque), "torque", false);
+        account.add(who + "torque", length(tb.torque - b.torque),
+                    std::max(length(b.torque), least * bench.grains[probe.i].radius), "torque", false);
     }
     out.cases = account.take();
     for (const TwoBodyCase& one : out.cases)
