@@ -36,7 +36,9 @@ json grid(const std::vector<double>& values, std::size_t columns) {
 }
 
 json drift_profile_json(const XDrift& drift) {
-    return {{"difference", numbers(drift.difference)}, {"standard_error", numbers(drift.standard_error)}};
+    return {{"difference", numbers(drift.difference)},
+            {"standard_error", numbers(drift.standard_error)},
+            {"band_factor", number(simultaneous_factor(drift.standard_error, 0.95, drift.degrees))}};
 }
 
 json evaluation_summary(const Study& study, const Evaluation& evaluation) {

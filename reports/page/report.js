@@ -209,7 +209,7 @@
   }
   function drift_figure(width) {
     const d = result.x_drift.profile, t = result.x_drift.tolerance;
-    const rows = d.difference.map((v, b) => ({ y: (profile.y_m[b] ?? 0) * 1e3, v, e: 1.96 * (d.standard_error[b] ?? 0) })).filter((r) => known(r.v));
+    const rows = d.difference.map((v, b) => ({ y: (profile.y_m[b] ?? 0) * 1e3, v, e: (d.band_factor ?? 0) * (d.standard_error[b] ?? 0) })).filter((r) => known(r.v));
     const reach = Math.max(1.6 * t, ...rows.map((r) => 1.08 * (Math.abs(r.v) + r.e)));
     return Plot.plot({
       width, height: Math.max(240, Math.min(360, width * 0.55)), marginLeft: 50, marginRight: 12, marginBottom: 42, style, grid: true,
@@ -228,7 +228,7 @@
   section("figures", "Gradation", h("div", { class: "grid" },
     figure("w12", "From the partition to the layer", "Plan view to scale: chambers A (blue) and B (orange) in the dispenser, the land that the blade crosses, and the GI of the layer on the platform. Dashed: the part's footprint, where everything is judged.", whole_plan),
     bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
-    bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third, with 95 % error bars; shaded: tolerance (on the rms over the bins).", drift_figure) : null,
+    bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third; the 95 % error bars hold for all bins together; shaded: tolerance (on the rms over the bins).", drift_figure) : null,
     map ? figure("w6", "GI over the platform", `Cells of ${mm(map.x_m.length > 1 ? map.x_m[1] - map.x_m[0] : null)} mm, ${map.of}. Dashed: the part's footprint. Grey: no powder.`, map_figure) : null,
     origin ? figure("w6", "Where the powder comes from", `Share of the laid solid by place in the dispenser and on the platform (${origin.layers} map layer${origin.layers === 1 ? "" : "s"}). A layer that takes the same mixture of places at every x has no drift.`, origin_figure) : null,
     origin ? figure("w12", "W(origin): the dispenser's share in the part", "Solid laid in the footprint that came from before x. The straight line would be a dispenser emptied evenly; the partition's first guess is read from this curve.", cumulative_figure) : null));

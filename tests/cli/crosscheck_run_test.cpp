@@ -12,51 +12,16 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// A coupon of a third in length and width; physics of the shipped examples. The part begins one flight of a
-/// grain, v sqrt(2 gap/g) = 0.3 mm, behind the platform's edge; bins of 50 um, so that some lie outside the
+/// A coupon of a third in length and width, of the physics of the shipped examples. The part begins one flight of
+/// a grain, v sqrt(2 gap/g) = 0.3 mm, behind the platform's edge; bins of 50 um, so that some lie outside the
 /// side margins.
-const char* const kTinyStudy = R"(
-[study]
-name = "tiny"
-[machine]
-dispenser = { length = "0.6 mm", width = "0.5 mm", depth = "1 mm" }
-platform  = { length = "0.7 mm" }
-land = "0.2 mm"
-second_land = "0.4 mm"
-blade = { thickness = "0.2 mm" }
-[process]
-layer_thickness = "40 um"
-blade_speed = "50 mm/s"
-substrate = "fused"
-gap = "steady"
-steady_packing = 0.28
-sides = "periodic"
-[powder.A]
-material = "SS17-4PH"
-[powder.B]
-material = "IN718"
-[target]
-shape = "linear"
-from = { y = "0.15 mm", gi = 0.0 }
-to   = { y = "0.35 mm", gi = 1.0 }
-footprint = { x = ["0.3 mm", "0.7 mm"] }
-bin_width = "50 um"
-[design_space]
-partition = { family = "straight" }
-dosage_factor = 3.0
-[numerics]
-bed_depth = "60 um"
-reductions = ["fines_cut", "shallow_bed", "strip_map"]
-strip_width = "0.26 mm"
-[run]
-seed = 3
-)";
+const char* const kTinyStudy = GRADWRIGHT_SOURCE_DIR "/docs/crosscheck.toml";
 
 class LammpsAtWork : public CalledProgram {
   protected:
     void SetUp() override {
         CalledProgram::SetUp();
-        std::ofstream(folder_ / "work" / "tiny.toml") << kTinyStudy;
+        fs::copy_file(kTinyStudy, folder_ / "work" / "tiny.toml");
     }
 };
 
