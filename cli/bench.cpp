@@ -18,6 +18,7 @@ struct BenchCommand {
     std::string study;  ///< empty: the shipped linear coupon
     std::vector<double> grains = {20000};
     std::vector<int> threads;  ///< empty: one thread, and every core when there are more
+    std::vector<std::string> states = {"settled"};
     long steps = 2000;
 };
 
@@ -30,6 +31,7 @@ nlohmann::json bench_json(const BenchResult& result) {
                          {"grains", one.grains},
                          {"threads", one.threads},
                          {"grain_steps_per_second", number(one.grain_steps_per_second)},
+                         {"awake_share", number(one.awake_share)},
                          {"seconds", number(one.seconds)},
                          {"stages", stages},
                          {"bytes_per_grain", number(one.bytes_per_grain)},
@@ -43,12 +45,12 @@ void print_bench(const BenchResult& result) {
     fmt::print("{} cores, compiled for {}\n", result.cores, result.isa);
     for (const BenchCase& one : result.cases) {
         fmt::print(
-            "\n{}, {} grains, {} thread{}: {:.2f} million grain-steps/s ({:.2f} per thread), {:.0f} "
-            "bytes/grain, {:.2f} "
-            "contacts/grain\n",
-            one.name, one.grains, one.threads, one.threads == 1 ? "" : "s", one.grain_steps_per_second / 1e6,
-            one.grain_steps_per_second / 1e6 / std::max(1, one.threads), one.bytes_per_grain,
-            one.contacts_per_grain);
+            "\n{}, {} grains, {:.0f} % awake, {} thread{}: {:.2f} million grain-steps/s ({:.2f} per thread), "
+            "{:.0f} "
+            "bytes/grain, {:.2f} contacts/grain\n",
+            one.name, one.grains, 100 * one.awake_share, one.threads, one.threads == 1 ? "" : "s",
+            one.grain_steps_per_second / 1e6, one.grain_steps_per_second / 1e6 / std::max(1, one.threads),
+            one.bytes_per_grain, one.contacts_per_grain);
         for (const auto& [stage, seconds] : one.stages)
             fmt::print("    {:<16} {:>6.1f} %\n", stage, one.seconds > 0 ? 100 * seconds / one.seconds : 0.0);
     }
@@ -63,6 +65,7 @@ ExitCode run_bench_command(const BenchCommand& command, const CommonOptions& com
     options.grains = command.grains;
     options.threads = command.threads;
     options.steps = command.steps;
+    options.states = command.states;
     options.cache_folder = cache_folder(common);
     if (options.threads.empty()) {
         options.threads = {1};
@@ -102,6 +105,13 @@ void add_bench(CLI::App& app, Call& call) {
         ->type_name("N")
         ->allow_extra_args(false)
         ->check(CLI::Range(1, 1024));
+    verb->add_option(
+            "--state", command->states,
+            "settled (default) | flowing: the bed slides over its floor | spread: a heap before the blade, "
+            "minutes of preparation; may be repeated")
+        ->type_name("NAME")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"settled", "flowing", "spread"}));
     verb->add_option("--steps", command->steps, "Time steps that are timed; default 2000")
         ->type_name("N")
         ->check(CLI::Range(1L, 1000000000L));

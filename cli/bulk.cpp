@@ -79,8 +79,8 @@ ExitCode run_bulk(const BulkCommand& command, const CommonOptions& common) {
                        r.left_fraction > 0.5 ? "the powder stands upright; drain a taller bed (--height)"
                                              : "too little stays for a slope; drain a longer bed (--length)");
         else
-            fmt::print("angle of repose      {:.1f} +- {:.1f} degrees, drained from {:.2f} mm{}\n", r.angle_deg,
-                       r.fit_error_deg, 1e3 * setup.height, r.at_rest ? "" : ", still creeping");
+            fmt::print("angle of repose      {:.1f} +- {:.1f} degrees, drained from {:.2f} mm{}\n",
+                       r.angle_deg, r.fit_error_deg, 1e3 * setup.height, r.at_rest ? "" : ", still creeping");
         fmt::print("left behind the gate {:.0f} % of the powder; {:.2f} mm stand at the edge\n",
                    100 * r.left_fraction, 1e3 * r.gate_height);
     }

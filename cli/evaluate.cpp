@@ -203,9 +203,10 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
         fmt::print(stderr, "gradwright: the simulation ended with '{}': {}\n", evaluation.health.status,
                    evaluation.health.reason);
     if (code == ExitCode::interrupted)
-        fmt::print(stderr,
-                   "gradwright: interrupted before the layer lay; beds that had settled are kept in the cache, and "
-                   "the same command takes them up again\n");
+        fmt::print(
+            stderr,
+            "gradwright: interrupted before the layer lay; beds that had settled are kept in the cache, and "
+            "the same command takes them up again\n");
     return code;
 }
 

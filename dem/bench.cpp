@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <thread>
 
-#include "dem/bed.h"
+#include "dem/stage.h"
 
 namespace gradwright {
 
@@ -27,13 +29,92 @@ std::string compiled_isa() {
 #endif
 }
 
+namespace {
+
+BenchCase timed(Engine& engine, const std::string& name, int threads, long steps) {
+    const EngineTimes before = engine.times();
+    const double steps_before = engine.grain_steps(), start = omp_get_wtime();
+    engine.advance(steps);
+    BenchCase c;
+    c.seconds = omp_get_wtime() - start;
+    c.name = name;
+    c.grains = static_cast<long>(engine.mobile());
+    c.threads = threads;
+    c.grain_steps_per_second = (engine.grain_steps() - steps_before) / c.seconds;
+    c.awake_share =
+        (engine.grain_steps() - steps_before) / (static_cast<double>(steps) * static_cast<double>(c.grains));
+    c.stages = {{"law", engine.times().law - before.law},
+                {"grains", engine.times().grains - before.grains},
+                {"near_list", engine.times().near_list - before.near_list},
+                {"candidates", engine.times().candidates - before.candidates}};
+    c.bytes_per_grain = engine.memory_bytes() / static_cast<double>(engine.state().size());
+    c.contacts_per_grain = static_cast<double>(engine.contacts()) / static_cast<double>(engine.mobile());
+    c.state_hash = engine.state_hash();
+    if (!engine.failed().empty()) throw std::runtime_error("bench: " + name + ": " + engine.failed());
+    return c;
+}
+
+/// The packed bed on its floor. Settled: at rest under its weight. Flowing: under ten times its weight at 60
+/// degrees across the periodic width, until it slides over its floor as fast as the blade would push it.
+BenchCase of_bed(const Scene& scene, const Bed& bed, bool flowing, int threads, const BenchOptions& options) {
+    EngineOptions eo = engine_options(scene, threads);
+    if (flowing) {
+        const double g = 10 * scene.gravity;
+        eo.gravity = {0, g * std::sin(std::numbers::pi / 3), -g * std::cos(std::numbers::pi / 3)};
+    }
+    Engine engine(eo);
+    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth,
+                                       scene.roughness, scene.seed ^ 0xf100f))
+        engine.add_grain(g);
+    add_bed(engine, bed, false);
+    add_end_walls(engine, scene);
+    add_side_walls(engine, scene);
+    engine.advance(200);
+    if (flowing) {
+        const auto speed = [&engine] {
+            double sum = 0;
+            const State& s = engine.state();
+            for (std::size_t i = 0; i < s.size(); ++i)
+                if (!s.fixed[i]) sum += s.vy[i];
+            return sum / static_cast<double>(engine.mobile());
+        };
+        for (int k = 0; k < 200 && speed() < scene.blade_speed && engine.failed().empty(); ++k)
+            engine.advance(200);
+        if (speed() < scene.blade_speed)
+            throw std::runtime_error("bench: flowing: the bed does not slide under ten times its weight");
+    }
+    return timed(engine, flowing ? "flowing" : "settled", threads, options.steps);
+}
+
+/// A spread as it runs, sleeping grains and all, timed when the blade has gone a quarter of the dispenser and
+/// a heap stands before it.
+BenchCase of_spread(const Scene& scene, const Stage& stage, int threads, const BenchOptions& options) {
+    EngineOptions eo = engine_options(scene, threads);
+    eo.sleep = scene.sleep;
+    eo.remove_beyond_x = platform_end(scene) + scene.second_land;
+    Engine engine(eo);
+    for (const GrainSpec& grain : stage.fixed) engine.add_grain(grain);
+    for (const Body& body : stage.bodies) engine.add_body(body);
+    add_bed(engine, stage.bed, stage.labelled);
+    engine.start_bodies();
+    const double way = 0.25 * scene.dispenser_length;
+    while (engine.body_shift_x(stage.blade) < way && engine.failed().empty()) {
+        engine.advance(500);
+        if (options.progress)
+            options.progress("heap before the blade", std::min(0.99, engine.body_shift_x(stage.blade) / way));
+    }
+    return timed(engine, "spread", threads, options.steps);
+}
+
+}  // namespace
+
 BenchResult run_bench(const BenchOptions& options) {
     BenchResult out;
     out.cores = static_cast<int>(std::thread::hardware_concurrency());
     out.isa = compiled_isa();
     for (const double wanted : options.grains) {
         Scene scene = options.scene;
-        scene.sleep = false;
+        scene.sides = Sides::periodic;
         // the default study's cross-section, longer or wider until the number of grains fits
         const double per_area = estimate_cost(scene).grains / (scene.dispenser_length * scene.width);
         const double area = wanted * 1.08 / per_area;
@@ -46,37 +127,18 @@ BenchResult run_bench(const BenchOptions& options) {
                 options.progress(fmt::format("{:.0f} grains: {}", wanted, p.stage), p.fraction);
             };
         RunHealth health;
-        const Bed bed = cached_bed(scene, nullptr, so, health);
-        if (!health.ok()) throw std::runtime_error("bench: " + health.status + ": " + health.reason);
-        for (const int threads : options.threads) {
-            EngineOptions eo = engine_options(scene, threads);
-            Engine engine(eo);
-            for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth,
-                                               scene.roughness, scene.seed ^ 0xf100f))
-                engine.add_grain(g);
-            add_bed(engine, bed, false);
-            add_end_walls(engine, scene);
-            add_side_walls(engine, scene);
-            engine.advance(200);
-            const EngineTimes before = engine.times();
-            const double steps_before = engine.grain_steps(), start = omp_get_wtime();
-            engine.advance(options.steps);
-            BenchCase c;
-            c.seconds = omp_get_wtime() - start;
-            c.name = "settled";
-            c.grains = static_cast<long>(engine.mobile());
-            c.threads = threads;
-            c.grain_steps_per_second = (engine.grain_steps() - steps_before) / c.seconds;
-            c.stages = {{"law", engine.times().law - before.law},
-                        {"grains", engine.times().grains - before.grains},
-                        {"near_list", engine.times().near_list - before.near_list},
-                        {"candidates", engine.times().candidates - before.candidates}};
-            c.bytes_per_grain = engine.memory_bytes() / static_cast<double>(engine.state().size());
-            c.contacts_per_grain =
-                static_cast<double>(engine.contacts()) / static_cast<double>(engine.mobile());
-            c.state_hash = engine.state_hash();
-            out.cases.push_back(c);
-        }
+        const auto spreads = std::count(options.states.begin(), options.states.end(), "spread");
+        const bool rests = spreads < static_cast<std::ptrdiff_t>(options.states.size());
+        const Bed bed = rests ? cached_bed(scene, nullptr, so, health) : Bed{};
+        if (rests && !health.ok()) throw std::runtime_error("bench: " + health.status + ": " + health.reason);
+        const Stage stage = spreads > 0 ? set_stage(scene, nullptr, so, health) : Stage{};
+        if (spreads > 0 && !health.ok())
+            throw std::runtime_error("bench: " + health.status + ": " + health.reason);
+        for (const std::string& state : options.states)
+            for (const int threads : options.threads)
+                out.cases.push_back(state == "spread"
+                                        ? of_spread(scene, stage, threads, options)
+                                        : of_bed(scene, bed, state == "flowing", threads, options));
     }
     return out;
 }

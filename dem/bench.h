@@ -12,17 +12,19 @@ namespace gradwright {
 struct BenchOptions {
     std::vector<double> grains = {20000};  ///< wanted sizes, mobile grains
     std::vector<int> threads = {1};
-    long steps = 2000;         ///< timed steps a case
+    std::vector<std::string> states = {"settled"};  ///< settled | flowing | spread
+    long steps = 2000;                              ///< timed steps a case
     Scene scene;               ///< physics: powders, law, time step; lengths are chosen from the size
     std::string cache_folder;  ///< settled beds
     std::function<void(const std::string& stage, double fraction)> progress;
 };
 
 struct BenchCase {
-    std::string name;  ///< "settled"
+    std::string name;  ///< of the state
     long grains = 0;
     int threads = 1;
-    double grain_steps_per_second = 0;  ///< grains whose forces were evaluated, nobody asleep
+    double grain_steps_per_second = 0;  ///< grains whose forces were evaluated
+    double awake_share = 1;             ///< grain-steps / (steps x mobile grains); 1 but for "spread"
     double seconds = 0;
     std::map<std::string, double> stages;  ///< seconds: law, grains, near_list, candidates
     double bytes_per_grain = 0;

@@ -1,5 +1,6 @@
 // The contact pass: gather two grains per lane, run the law, leave force and torques in the tile. No grain is
-// written here.
+// written here. Rejected: prefetching the second grains of the tile four ahead (11.2 against 11.4 million
+// grain-steps/s on a bed of 29 000 grains, one core).
 #include <algorithm>
 #include <cmath>
 

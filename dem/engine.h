@@ -129,6 +129,13 @@ class Engine {
     }
     double work_of_adhesion() const { return adhesion_; }  ///< scaled Gamma' [J/m2]
     int threads() const { return threads_; }
+    /// Everything the next step reads, as bytes of this program on this kind of machine; not with
+    /// `energy_account`.
+    std::string save();
+    /// Onto an engine with the same options and bodies (threads may differ) and any grains: advanced in the
+    /// same portions the run goes on with the bits it would have had (the bodies' clock is summed portion by
+    /// portion). Throws std::invalid_argument for bytes of another run, cut short or damaged.
+    void restore(const std::string& saved);
     const EnergyLedger& energy() const { return energy_; }  ///< zeros without `energy_account`
 
     /// Bodies stand still until this instant counts: their shift is speed x (time since).
@@ -143,6 +150,9 @@ class Engine {
     template <class T>
     struct KernelOf;
 
+    template <class Archive>
+    void archive(Archive& to);
+    std::string options_text() const;  ///< hash of what a saved run must agree with
     void rebuild_candidates();
     void find_reachable_bodies();
     void update_sleep();

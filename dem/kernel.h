@@ -114,6 +114,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     double max_overlap_ratio() const override;
     std::size_t contacts_beyond(double ratio) const override;
     double memory_bytes() const override;
+    template <class Archive>
+    void archive(Archive& to);
 
     /// The run before the step that is booked; filled only with `energy_account`.
     struct Before {

@@ -70,10 +70,10 @@ std::vector<double> bin_targets(const Study& study) {
     return target;
 }
 
-void allow_for_beds(Evaluation& evaluation, double variance_ratio) {
-    for (auto* errors : {&evaluation.profile.standard_error, &evaluation.drift.standard_error})
-        for (double& s : *errors) s *= std::sqrt(variance_ratio);
-    evaluation.drift.noise_floor *= std::sqrt(variance_ratio);
+void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio) {
+    for (double& s : evaluation.profile.standard_error) s *= std::sqrt(variance_ratio.profile);
+    for (double& s : evaluation.drift.standard_error) s *= std::sqrt(variance_ratio.drift);
+    evaluation.drift.noise_floor *= std::sqrt(variance_ratio.drift);
 }
 
 void judge(const Study& study, Evaluation& evaluation) {

@@ -24,6 +24,7 @@ struct Evaluation {
     GradationMap map;  ///< full only; map: relabelled
     GradationProfile
         plain_check;  ///< map only: plain bins of the same strips tiled over the width; empty otherwise
+    XDrift plain_check_drift;            ///< and their drift
     std::vector<double> target, weight;  ///< per bin
     Misfit misfit, drift_misfit;
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;
@@ -61,10 +62,13 @@ std::vector<double> bin_targets(const Study& study);
 
 /// The grains of one bed share more than its blocks can tell: how this bed as a whole happened to turn over.
 /// Widens standard errors of profile and drift that were taken from blocks of single beds by the square root
-/// of `variance_ratio`: variance between ten beds of the coupon over the variance the blocks gave, for maps
-/// of strips and for plain bins (docs/origin-map.md, "One bed's noise").
-constexpr double kBedsOverBlocksMap = 2.0, kBedsOverBlocksPlain = 1.5;
-void allow_for_beds(Evaluation& evaluation, double variance_ratio);
+/// of `variance_ratio`: variance between sixteen beds of the coupon over the variance the blocks gave, for
+/// maps of strips and for plain bins (docs/origin-map.md, "One bed's noise").
+struct BedAllowance {
+    double profile, drift;  ///< what all grains of a bed share cancels in part in a difference along x
+};
+constexpr BedAllowance kBedsOverBlocksMap{3.5, 1.3}, kBedsOverBlocksPlain{2.3, 1.25};
+void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio);
 
 /// From run results to numbers, shared by every evaluator: fills target, weight, misfits, objective and
 /// residuals. objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0,

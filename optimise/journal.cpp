@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr const char* kAside = ".part";
 
 json number(double value) {
@@ -140,6 +140,7 @@ const auto evaluation_fields = [](auto io, auto& e) {
     io("seed", e.seed);
     io.object("profile", e.profile, profile_fields);
     io.object("plain_check", e.plain_check, profile_fields);
+    io.object("plain_check_drift", e.plain_check_drift, drift_fields);
     io.object("x_drift", e.drift, drift_fields);
     io.object("map", e.map, map_fields);
     io("target", e.target);

@@ -204,7 +204,11 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
                                                  study_.scene.powder[1].material.density};
             evaluation.map = gradation_map(whole, label, density, study_.bins.width, study_.dispenser_width);
             evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
-            for (double& s : evaluation.plain_check.standard_error) s *= std::sqrt(kBedsOverBlocksPlain);
+            for (double& s : evaluation.plain_check.standard_error)
+                s *= std::sqrt(kBedsOverBlocksPlain.profile);
+            evaluation.plain_check_drift = plain_drift(whole, label, footprint, study_.bins, map.seed);
+            for (double& s : evaluation.plain_check_drift.standard_error)
+                s *= std::sqrt(kBedsOverBlocksPlain.drift);
         }
     }
     judge(study_, evaluation);

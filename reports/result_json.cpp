@@ -287,7 +287,8 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
                          {"band", "simultaneous 95 % over the bins"}};
     if (!evaluation.plain_check.gi.empty())  // of a map: what bins of their own grains say
         object["plain_bins"] = {{"gi", numbers(evaluation.plain_check.gi)},
-                                {"standard_error", numbers(evaluation.plain_check.standard_error)}};
+                                {"standard_error", numbers(evaluation.plain_check.standard_error)},
+                                {"x_drift", drift_profile_json(evaluation.plain_check_drift)}};
     object["map"] = map;
     if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
     object["x_drift"] = drift;

@@ -51,7 +51,7 @@ void measure_line(const Study& study, const Design& design, const Layer& layer,
     const BinGrid grid{bin, static_cast<int>(std::floor(study.dispenser_width / bin + 1e-9))};
     out.fine = plain_profile(layer, carried_labels(layer), footprint_of(study, design), grid, study.seed);
     for (double& s : out.fine.standard_error)
-        s *= std::sqrt(kBedsOverBlocksPlain);  // one bed, as in its bins
+        s *= std::sqrt(kBedsOverBlocksPlain.profile);  // one bed, as in its bins
     const std::array<Material, 2> alloys = {study.scene.powder[0].material, study.scene.powder[1].material};
     if (composition) {
         const double factor = band_factor(out.fine);

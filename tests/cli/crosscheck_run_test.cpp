@@ -12,9 +12,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// A coupon of a third in length and width, of the physics of the shipped examples. The part begins one flight of
-/// a grain, v sqrt(2 gap/g) = 0.3 mm, behind the platform's edge; bins of 50 um, so that some lie outside the
-/// side margins.
+/// A coupon of a third in length and width, of the physics of the shipped examples. The part begins one
+/// flight of a grain, v sqrt(2 gap/g) = 0.3 mm, behind the platform's edge; bins of 50 um, so that some lie
+/// outside the side margins.
 const char* const kTinyStudy = GRADWRIGHT_SOURCE_DIR "/docs/crosscheck.toml";
 
 class LammpsAtWork : public CalledProgram {

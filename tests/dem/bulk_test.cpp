@@ -1,5 +1,5 @@
-// Bulk checks and limits, one small case of each row of docs/bulk.md and docs/hard-cases.md: the edge of the time
-// step, sticking, draining, layers against gap, speed and substrate, and what a factor does to GI.
+// Bulk checks and limits, one small case of each row of docs/bulk.md and docs/hard-cases.md: the edge of the
+// time step, sticking, draining, layers against gap, speed and substrate, and what a factor does to GI.
 #include "dem/bulk.h"
 
 #include <gtest/gtest.h>
@@ -157,7 +157,8 @@ TEST(LayerPacking, friction_moves_the_gi_no_more_than_another_bed_does) {
     Scene scene = short_strip();
     const PartitionCurve partition = straight_partition(scene.dispenser_length, scene.width, 10, 0);
     const auto gi = [&](const Layer& layer) {
-        return homogeneous_profile({&layer, 1}, partition, 0.3e-3, 1e-3, {.width = 0.065e-3, .count = 4}, {}).gi;
+        return homogeneous_profile({&layer, 1}, partition, 0.3e-3, 1e-3, {.width = 0.065e-3, .count = 4}, {})
+            .gi;
     };
     const auto rms = [](const std::vector<double>& a, const std::vector<double>& b) {
         double sum = 0;
