@@ -153,10 +153,17 @@ TEST(EndToEnd, a_light_powder_shows_in_the_confirmation_and_not_in_the_map) {
     ASSERT_TRUE(predicted.health.ok()) << predicted.health.reason;
     const std::uint64_t unseen = confirmation_seed(like.seed, 0);
     const Evaluation heavy = evaluate_once(like, along, Fidelity::full, unseen, options);
-    const Evaluation light = evaluate_once(unlike, along, Fidelity::full, unseen, options);
     ASSERT_TRUE(heavy.health.ok()) << heavy.health.reason;
-    ASSERT_TRUE(light.health.ok()) << light.health.reason;
     EXPECT_LT(surprise(heavy, predicted), 2);
+    // two beds, as a design that is undecided after one would spread them
+    Evaluation light;
+    std::vector<GradationProfile> beds;
+    for (const int bed : {0, 1}) {
+        light = evaluate_once(unlike, along, Fidelity::full, confirmation_seed(like.seed, bed), options);
+        ASSERT_TRUE(light.health.ok()) << light.health.reason;
+        beds.push_back(light.profile);
+    }
+    light.profile = mean_profile(beds);
     EXPECT_GT(surprise(light, predicted), 3);
 }
 

@@ -2,7 +2,7 @@
 // every partition is known.
 //   deposit_x uniform on the platform; origin_x | deposit_x normal, mean L_d (centre + turn (x/L_b - 1/2)),
 //   sd = mixing L_d, cut to the dispenser; deposit_y - origin_y normal with sd sigma_y; log-normal volumes.
-//   Drawn by quantile, independent between grains.
+//   Drawn by quantile, independent between grains but for the bed's own shift.
 #pragma once
 #include <cmath>
 #include <memory>
@@ -19,6 +19,7 @@ struct Heap {
     double sigma_y = 40e-6;
     double grains_per_m2 = 3000 / (3.2e-3 * 0.4e-3);
     double full_shift = 0;  ///< the labelled spread's physics: centre moved by this
+    double bed_shift = 0;   ///< sd of what all grains of one bed share: a shift of the centre
     double land_turn = 0;   ///< turn changes by this per m of land beyond 3.2 mm
     int fail_full = 0;      ///< this many of the first labelled spreads end "jammed"
     bool fail_map = false;
@@ -59,11 +60,12 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
     layer.gap = scene.gap;
     layer.packing_seed = scene.seed;
     layer.bed_packing = 0.55;
+    const double shift = heap.bed_shift * scene.dispenser_length * Random(scene.seed ^ 0xbedULL).normal();
     const int grains = int(heap.grains_per_m2 * scene.platform_length * scene.width);
     for (int i = 0; i < grains; ++i) {
         const double x = scene.platform_length * random.uniform();
         const double y = scene.width * random.uniform();
-        const double mean = heap.mean(scene, x, labelled), sd = heap.mixing * scene.dispenser_length;
+        const double mean = heap.mean(scene, x, labelled) + shift, sd = heap.mixing * scene.dispenser_length;
         double origin_x = -1;
         while (!(origin_x >= 0 && origin_x < scene.dispenser_length)) origin_x = mean + sd * random.normal();
         const double origin_y = y - heap.sigma_y * random.normal();
