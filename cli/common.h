@@ -74,6 +74,7 @@ void add_evaluate(CLI::App& app, Call& call);
 void add_check(CLI::App& app, Call& call);
 void add_crosscheck(CLI::App& app, Call& call);
 void add_bench(CLI::App& app, Call& call);
+void add_tradeoff(CLI::App& app, Call& call);
 void add_verify(CLI::App& app, Call& call);
 void add_bulk(CLI::App& app, Call& call);
 void add_limits(CLI::App& app, Call& call);

@@ -102,6 +102,7 @@ int run(int argc, char** argv) {
     add_check(app, call);
     add_report(app, call);
     add_crosscheck(app, call);
+    add_tradeoff(app, call);
     add_bench(app, call);
     add_verify(app, call);
     add_bulk(app, call);

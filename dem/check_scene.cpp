@@ -59,7 +59,9 @@ std::vector<SceneProblem> validate(const Scene& s) {
     if (s.gap < 1.5 * d90 && s.gap >= d_max)
         warn(fmt::format("gap {:.0f} um is below 1.5 D90 ({:.0f} um): the layer will be thin and patchy",
                          s.gap * um, 1.5 * d90 * um));
-    if (const double edge = stability_edge_of(s.interaction); s.rayleigh_fraction > 0.5 * edge)
+    if (const double edge = stability_edge_of(s.interaction); s.rayleigh_fraction > kStabilityEdge)
+        fatal(step_advice(s.rayleigh_fraction, s.interaction));
+    else if (s.rayleigh_fraction > 0.5 * edge)
         warn(fmt::format(
             "time step {:.2g} of Rayleigh's is {:.2g} times the stability edge, {:.2g} (measured "
             "in a dense heap at "

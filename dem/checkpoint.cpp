@@ -63,13 +63,11 @@ void Engine::KernelOf<T>::archive(Archive& to) {
     to.array(motion);
     to.array(tiles);
     to.array(walls);
-    to.array(own_record);
-    to.array(in_record);
-    to.array(inverse_mass);
-    to.array(inverse_inertia);
     to.array(own_first);
     to.array(in_first);
     to.array(wall_first);
+    to.array(blocks);
+    to.array(force_on_fixed_by_block);
     to.value(active_slots);
     to.value(parked_slots);
     to.value(wall_slots);
@@ -151,6 +149,7 @@ void Engine::restore(const std::string& saved) {
         throw std::invalid_argument("Engine::restore: the saved run is damaged");
     Restorer restorer{bytes};
     archive(restorer);
+    kernel_->restored();
     failed_.clear();
 }
 

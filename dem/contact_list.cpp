@@ -25,6 +25,24 @@ void Engine::KernelOf<T>::scale_motion(double factor) {
         m.vx *= f, m.vy *= f, m.vz *= f;
         m.wx *= f, m.wy *= f, m.wz *= f;
     }
+    if (moving.size() == e.state_.size()) write_moving();
+}
+
+template <class T>
+void Engine::KernelOf<T>::write_moving() {
+    const auto& s = e.state_;
+    moving.resize(s.size());
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        const double inertia = 0.4 * s.mass[i] * s.radius[i] * s.radius[i];
+        moving[i] =
+            Moving{D4{s.vx[i], s.vy[i], s.vz[i], 1 / s.mass[i]}, D4{s.wx[i], s.wy[i], s.wz[i], 1 / inertia}};
+    }
+}
+
+template <class T>
+void Engine::KernelOf<T>::restored() {
+    write_moving();
+    if (e.lists_valid_) share_out();
 }
 
 template <class T>
@@ -34,22 +52,19 @@ void Engine::KernelOf<T>::write_records() {
     const bool known = motion.size() == n + 2 && !e.first_kick_;
     position.resize(n + 2);
     motion.resize(n + 2);
-    inverse_mass.resize(n);
-    inverse_inertia.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         position[i] = {s.x[i], s.y[i], s.z[i], s.radius[i]};
         const bool still =
             s.vx[i] == 0 && s.vy[i] == 0 && s.vz[i] == 0 && s.wx[i] == 0 && s.wy[i] == 0 && s.wz[i] == 0;
         if (!known || still)
-            motion[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]),     S(s.wx[i]),
-                         S(s.wy[i]), S(s.wz[i]), S(s.radius[i]), S(0)};
-        inverse_mass[i] = 1 / s.mass[i];
-        inverse_inertia[i] = 1 / (0.4 * s.mass[i] * s.radius[i] * s.radius[i]);
+            motion[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.radius[i]),
+                         S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(0)};
     }
+    write_moving();
     // two far dummies for padding lanes
     position[n] = {0, 0, 1e3, 1e-6};
     position[n + 1] = {0, 0, -1e3, 1e-6};
-    motion[n] = motion[n + 1] = {0, 0, 0, 0, 0, 0, S(1e-6), 0};
+    motion[n] = motion[n + 1] = {0, 0, 0, S(1e-6), 0, 0, 0, 0};
 }
 
 template <class T>
@@ -61,8 +76,8 @@ void Engine::KernelOf<T>::carry_history() {
     AlignedVector<Motion> moved(e.state_.size() + 2);
     for (std::size_t i = 0; i < e.state_.size(); ++i) {
         const auto& s = e.state_;
-        moved[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]),     S(s.wx[i]),
-                    S(s.wy[i]), S(s.wz[i]), S(s.radius[i]), S(0)};
+        moved[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.radius[i]),
+                    S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(0)};
     }
     for (std::size_t i = 0; i < std::min(known, new_index.size()); ++i)
         if (new_index[i] >= 0) moved[new_index[i]] = motion[i];
@@ -87,6 +102,7 @@ void Engine::KernelOf<T>::carry_history() {
     for (std::size_t slot = active_end; slot < active_end + parked_slots; ++slot) carry(slot);
     for (std::size_t slot = 0; slot < wall_slots; ++slot) {
         auto& g = walls[slot / W].i[slot % W];
+        if (g < 0) continue;
         g = g < static_cast<std::int32_t>(new_index.size()) ? new_index[g] : -1;
     }
 }
@@ -134,16 +150,41 @@ void Engine::KernelOf<T>::rebuild_near() {
             park_first[i + 1] += kind == 2;
         }
     }
-    std::partial_sum(own_first.begin(), own_first.end(), own_first.begin());
     std::partial_sum(park_first.begin(), park_first.end(), park_first.begin());
-    active_slots = own_first[n];
+    // Slots of the active pairs; every block begins on a tile of its own.
+    blocks.assign((n + kBlock - 1) / kBlock, Block{});
+    std::int32_t next = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        Block& block = blocks[b];
+        next = (next + W - 1) / W * W;
+        block.first_tile = next / W;
+        for (std::size_t i = b * kBlock; i < std::min(n, (b + 1) * kBlock); ++i) {
+            const std::int32_t count = own_first[i + 1];
+            own_first[i] = next;
+            next += count;
+        }
+        block.own_end = next;
+        block.end_tile = (next + W - 1) / W;
+    }
+    active_slots = next;
     parked_slots = park_first[n];
     const std::size_t active_tiles = (active_slots + W - 1) / W, parked_tiles = (parked_slots + W - 1) / W;
     tiles.resize(active_tiles + parked_tiles);
 
     const int material_count = static_cast<int>(e.options_.materials.size());
-#pragma omp parallel for schedule(static, 256) num_threads(e.threads_)
-    for (std::size_t i = 0; i < n; ++i) {
+    auto pad = [&](std::size_t from, std::size_t to) {
+        for (std::size_t slot = from; slot < to; ++slot) {
+            PairTile& t = tiles[slot / W];
+            const int lane = static_cast<int>(slot % W);
+            t.i[lane] = static_cast<std::int32_t>(n);
+            t.j[lane] = static_cast<std::int32_t>(n + 1);
+            t.radius[lane] = t.mass[lane] = t.e_star[lane] = t.g_star8[lane] = t.jkr_radius[lane] = 1;
+            t.touching[lane] = 0;
+            for (int k = 0; k < 3; ++k) t.xi[k][lane] = t.roll[k][lane] = 0;
+        }
+    };
+    const auto fill = [&](std::size_t i) {
+        std::int32_t& reach = blocks[i / kBlock].reach;
         std::size_t next_active = own_first[i], next_parked = active_tiles * W + park_first[i];
         for (std::int32_t c = e.candidate_first_[i]; c < e.candidate_first_[i + 1]; ++c) {
             if (keep[c] == 0) {
@@ -183,44 +224,117 @@ void Engine::KernelOf<T>::rebuild_near() {
                 t.xi[k][lane] = o ? turn * o->xi[k][from] : S(0);
                 t.roll[k][lane] = o ? turn * o->roll[k][from] : S(0);
             }
-            t.in_place[lane] = 0;
             e.candidate_slot_[c] = static_cast<std::int32_t>(slot);
-        }
-    }
-    auto pad = [&](std::size_t from, std::size_t to) {
-        for (std::size_t slot = from; slot < to; ++slot) {
-            PairTile& t = tiles[slot / W];
-            const int lane = static_cast<int>(slot % W);
-            t.i[lane] = static_cast<std::int32_t>(n);
-            t.j[lane] = static_cast<std::int32_t>(n + 1);
-            t.radius[lane] = t.mass[lane] = t.e_star[lane] = t.g_star8[lane] = t.jkr_radius[lane] = 1;
-            t.touching[lane] = 0;
-            for (int k = 0; k < 3; ++k) t.xi[k][lane] = t.roll[k][lane] = 0;
-            t.in_place[lane] = static_cast<std::int32_t>(active_slots);
+            if (keep[c] == 1) reach = std::max(reach, j);
         }
     };
-    pad(active_slots, active_tiles * W);
+#pragma omp parallel for schedule(dynamic, 2) num_threads(e.threads_)
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        for (std::size_t i = b * kBlock; i < std::min(n, (b + 1) * kBlock); ++i) fill(i);
+        pad(blocks[b].own_end, static_cast<std::size_t>(blocks[b].end_tile) * W);
+    }
     pad(active_tiles * W + parked_slots, (active_tiles + parked_tiles) * W);
 
-    // Slots in which a grain is the second, in ascending order.
+    // Places of the pairs in which a grain is the second, in ascending order of their slots.
     in_first.assign(n + 1, 0);
 #pragma omp parallel for schedule(static, 256) num_threads(e.threads_)
     for (std::size_t j = 0; j < n; ++j)
         for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r)
             in_first[j + 1] += keep[e.reverse_[r]] == 1;
     std::partial_sum(in_first.begin(), in_first.end(), in_first.begin());
-    own_record.assign(active_tiles * W, Record{});
-    in_record.assign(active_slots + 1, Record{});  // the last one takes what padding lanes write
-#pragma omp parallel for schedule(static, 256) num_threads(e.threads_)
-    for (std::size_t j = 0; j < n; ++j) {
-        std::int32_t at = in_first[j];
-        for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r)
-            if (keep[e.reverse_[r]] == 1) {
-                const std::int32_t slot = e.candidate_slot_[e.reverse_[r]];
-                tiles[slot / W].in_place[slot % W] = at++;
-            }
-    }
     rebuild_walls();
+    for (std::size_t b = 0, k = 0; b < blocks.size(); ++b) {
+        blocks[b].first_awake = static_cast<std::int32_t>(k);
+        while (k < e.awake_.size() && static_cast<std::size_t>(e.awake_[k]) < (b + 1) * kBlock) ++k;
+        blocks[b].end_awake = static_cast<std::int32_t>(k);
+    }
+    force_on_fixed_by_block.assign(blocks.size(), {});
+    share_out();
+}
+
+template <class T>
+void Engine::KernelOf<T>::share_out() {
+    const std::size_t n = e.state_.size();
+    const auto count = static_cast<std::int32_t>(blocks.size());
+    // fewer grains than this per thread cost more in waiting than they win
+    const auto threads =
+        static_cast<std::int32_t>(std::clamp<std::size_t>(e.awake_.size() / 200, 1, e.threads_));
+    const auto weight = [&](std::int32_t b) {
+        const Block& block = blocks[b];
+        return 3.0 * (block.end_tile - block.first_tile) + 4.0 * (block.end_wall - block.first_wall) +
+               0.5 * (block.end_awake - block.first_awake);
+    };
+    double all = 0;
+    for (std::int32_t b = 0; b < count; ++b) all += weight(b);
+    shares.assign(threads, Share{});
+    std::int32_t next = 0;
+    double done = 0;
+    for (std::int32_t t = 0; t < threads; ++t) {
+        shares[t].first = next;
+        while (next < count && (t == threads - 1 || done + 0.5 * weight(next) < all * (t + 1) / threads))
+            done += weight(next++);
+        shares[t].end = next;
+    }
+    const auto first_grain = [&](std::int32_t b) {
+        return std::min<std::int32_t>(static_cast<std::int32_t>(n), b * static_cast<std::int32_t>(kBlock));
+    };
+    // How far ahead of the sweep records are handed, from all blocks before.
+    std::vector<std::int32_t> reach(count);
+    for (std::int32_t b = 0, top = -1; b < count; ++b) reach[b] = top = std::max(top, blocks[b].reach);
+    std::int32_t span = 1, most_slots = 0;
+    for (Share& share : shares) {
+        share.tail = share.end;
+        for (std::int32_t b = share.first; b < share.end; ++b)
+            if (blocks[b].reach >= first_grain(share.end)) {
+                share.tail = b;
+                break;
+            }
+        for (std::int32_t b = share.first; b < share.tail; ++b) {
+            const std::int32_t to = in_first[std::min(reach[b] + 1, first_grain(share.tail))];
+            span = std::max(span, to - in_first[first_grain(b)]);
+            most_slots = std::max(most_slots, (blocks[b].end_tile - blocks[b].first_tile) * W);
+        }
+    }
+    // The energy account reads every record after the step: none may be overwritten.
+    if (e.options_.energy_account) span = std::max(span, in_first[n]);
+    std::int32_t ring_size = 1;
+    while (ring_size < span) ring_size *= 2;
+    ring_mask = ring_size - 1;
+    std::int32_t ring_end = 0, own_end = 0;
+    if (e.options_.energy_account) own_end = static_cast<std::int32_t>((active_slots + W - 1) / W * W);
+    for (Share& share : shares) {
+        share.ring = ring_end;
+        share.tail_ring = ring_end + ring_size;
+        share.tail_place = in_first[first_grain(share.tail)];
+        share.spill = share.tail_ring + in_first[first_grain(share.end)] - share.tail_place;
+        ring_end = (share.spill + 8) / 8 * 8;
+        share.own = own_end;
+        share.tail_own = own_end + most_slots;
+        own_end = share.tail_own;
+        if (share.tail < share.end)
+            own_end += (blocks[share.end - 1].end_tile - blocks[share.tail].first_tile) * W;
+    }
+    ring.resize(ring_end);
+    own_record.resize(own_end);
+
+#pragma omp parallel for schedule(dynamic, 2) num_threads(e.threads_)
+    for (std::int32_t b = 0; b < count; ++b) {
+        const Share& share =
+            *std::find_if(shares.begin(), shares.end(), [b](const Share& one) { return b < one.end; });
+        for (std::int32_t j = first_grain(b); j < first_grain(b + 1); ++j) {
+            std::int32_t place = in_first[j];
+            for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r)
+                if (const std::int32_t slot = e.candidate_slot_[e.reverse_[r]];
+                    slot >= 0 && static_cast<std::size_t>(slot) < active_slots) {
+                    tiles[slot / W].in_place[slot % W] = place < share.tail_place
+                                                             ? share.ring + (place & ring_mask)
+                                                             : share.tail_ring + place - share.tail_place;
+                    ++place;
+                }
+        }
+        for (std::int32_t slot = blocks[b].own_end; slot < blocks[b].end_tile * W; ++slot)
+            tiles[slot / W].in_place[slot % W] = share.spill;
+    }
 }
 
 template <class T>
@@ -257,10 +371,19 @@ void Engine::KernelOf<T>::rebuild_walls() {
                                          e.bodies_[b].speed_z * e.body_time_, s.x[i], s.y[i], s.z[i]);
             if (p.distance < s.radius[i] + e.near_skin_) near[i] |= 1u << b;
         }
-        wall_first[i + 1] = __builtin_popcount(near[i]);
     }
-    std::partial_sum(wall_first.begin(), wall_first.end(), wall_first.begin());
-    wall_slots = wall_first[n];
+    std::int32_t next = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        next = (next + W - 1) / W * W;
+        blocks[b].first_wall = next / W;
+        for (std::size_t i = b * kBlock; i < std::min(n, (b + 1) * kBlock); ++i) {
+            wall_first[i] = next;
+            next += __builtin_popcount(near[i]);
+        }
+        blocks[b].wall_end = next;
+        blocks[b].end_wall = (next + W - 1) / W;
+    }
+    wall_slots = static_cast<std::size_t>((next + W - 1) / W) * W;
     walls.resize((wall_slots + W - 1) / W);
     const int material_count = static_cast<int>(e.options_.materials.size());
     std::size_t kept = 0;
@@ -299,16 +422,17 @@ void Engine::KernelOf<T>::rebuild_walls() {
             }
         }
     }
-    for (std::size_t slot = wall_slots; slot < walls.size() * W; ++slot) {
-        WallTile& t = walls[slot / W];
-        const int lane = static_cast<int>(slot % W);
-        t.i[lane] = -1;
-        t.body[lane] = -1;
-        t.radius[lane] = t.mass[lane] = t.e_star[lane] = t.g_star8[lane] = t.jkr_radius[lane] = 1;
-        t.touching[lane] = 0;
-        for (int k = 0; k < 3; ++k) t.xi[k][lane] = t.roll[k][lane] = 0;
-        for (int k = 0; k < 6; ++k) t.out[k][lane] = 0;
-    }
+    for (const Block& block : blocks)
+        for (std::int32_t slot = block.wall_end; slot < block.end_wall * W; ++slot) {
+            WallTile& t = walls[slot / W];
+            const int lane = slot % W;
+            t.i[lane] = -1;
+            t.body[lane] = -1;
+            t.radius[lane] = t.mass[lane] = t.e_star[lane] = t.g_star8[lane] = t.jkr_radius[lane] = 1;
+            t.touching[lane] = 0;
+            for (int k = 0; k < 3; ++k) t.xi[k][lane] = t.roll[k][lane] = 0;
+            for (int k = 0; k < 6; ++k) t.out[k][lane] = 0;
+        }
 }
 
 template <class T>
@@ -334,15 +458,24 @@ BodyForce Engine::KernelOf<T>::force_on_body(int body) const {
 template <class T>
 BodyForce Engine::KernelOf<T>::force_on_fixed() const {
     BodyForce sum;
-    for (std::size_t slot = 0; slot < active_slots; ++slot) {
+    for (const auto& force : force_on_fixed_by_block) {
+        sum.x += force[0];
+        sum.y += force[1];
+        sum.z += force[2];
+    }
+    return sum;
+}
+
+template <class T>
+std::array<double, 3> Engine::KernelOf<T>::force_on_fixed_of(const Block& block, const Record* own) const {
+    std::array<double, 3> sum{};
+    for (std::int32_t slot = block.first_tile * W; slot < block.own_end; ++slot) {
         const PairTile& t = tiles[slot / W];
-        const int lane = static_cast<int>(slot % W);
+        const int lane = slot % W;
         const bool fi = e.state_.fixed[t.i[lane]], fj = e.state_.fixed[t.j[lane]];
         if (fi == fj) continue;
         const double turn = fi ? 1 : -1;  // the record is the force on i
-        sum.x += turn * own_record[slot].value[0];
-        sum.y += turn * own_record[slot].value[1];
-        sum.z += turn * own_record[slot].value[2];
+        for (int k = 0; k < 3; ++k) sum[k] += turn * own[slot].value[k];
     }
     return sum;
 }
@@ -420,9 +553,9 @@ std::size_t Engine::KernelOf<T>::contacts_beyond(double limit) const {
 template <class T>
 double Engine::KernelOf<T>::memory_bytes() const {
     auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-    return bytes(position) + bytes(motion) + bytes(tiles) + bytes(old_tiles) + bytes(walls) +
-           bytes(old_walls) + bytes(own_first) + bytes(in_first) + bytes(own_record) + bytes(in_record) +
-           bytes(wall_first) + bytes(keep) + bytes(park_first);
+    return bytes(position) + bytes(motion) + bytes(moving) + bytes(tiles) + bytes(old_tiles) + bytes(walls) +
+           bytes(old_walls) + bytes(own_first) + bytes(in_first) + bytes(own_record) + bytes(ring) +
+           bytes(wall_first) + bytes(keep) + bytes(park_first) + bytes(blocks);
 }
 
 template struct Engine::KernelOf<double>;

@@ -55,7 +55,7 @@ inline D4 round4(D4 v) {
 
 template <class T>
 template <bool kAdhesive, RollingModel kRolling>
-void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
+void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last, Record* own) {
     const double period = e.options_.period_y, inv_period = period > 0 ? 1 / period : 0;
     const double period_x = e.options_.period_x, inv_period_x = period_x > 0 ? 1 / period_x : 0;
     const double period_z = e.options_.period_z, inv_period_z = period_z > 0 ? 1 / period_z : 0;
@@ -125,10 +125,10 @@ void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
             c.vx = mi[0] - mj[0];
             c.vy = mi[1] - mj[1];
             c.vz = mi[2] - mj[2];
-            c.wix = mi[3], c.wiy = mi[4], c.wiz = mi[5];
-            c.wjx = mj[3], c.wjy = mj[4], c.wjz = mj[5];
-            c.arm_i = mi[6] - 0.5f * c.overlap;
-            c.arm_j = mj[6] - 0.5f * c.overlap;
+            c.wix = mi[4], c.wiy = mi[5], c.wiz = mi[6];
+            c.wjx = mj[4], c.wjy = mj[5], c.wjz = mj[6];
+            c.arm_i = mi[3] - 0.5f * c.overlap;
+            c.arm_j = mj[3] - 0.5f * c.overlap;
         }
         const T inverse = splat<T>(1) / distance;
         c.nx = dx * inverse;
@@ -157,16 +157,16 @@ void Engine::KernelOf<T>::pair_pass(std::size_t first, std::size_t last) {
         }
         store<T>(t.touching, out.touching);
         if constexpr (W == 1) {
-            own_record[k] = {{out.fx, out.fy, out.fz, out.tix, out.tiy, out.tiz, 0, 0}};
-            in_record[t.in_place[0]] = {{-out.fx, -out.fy, -out.fz, out.tjx, out.tjy, out.tjz, 0, 0}};
+            own[k] = {{out.fx, out.fy, out.fz, 0, out.tix, out.tiy, out.tiz, 0}};
+            ring[t.in_place[0]] = {{-out.fx, -out.fy, -out.fz, 0, out.tjx, out.tjy, out.tjz, 0}};
         } else {
-            F8 own[8] = {out.fx, out.fy, out.fz, out.tix, out.tiy, out.tiz, F8{}, F8{}};
-            F8 other[8] = {-out.fx, -out.fy, -out.fz, out.tjx, out.tjy, out.tjz, F8{}, F8{}};
-            transpose8(own);
+            F8 mine[8] = {out.fx, out.fy, out.fz, F8{}, out.tix, out.tiy, out.tiz, F8{}};
+            F8 other[8] = {-out.fx, -out.fy, -out.fz, F8{}, out.tjx, out.tjy, out.tjz, F8{}};
+            transpose8(mine);
             transpose8(other);
             for (int lane = 0; lane < 8; ++lane) {
-                *reinterpret_cast<F8*>(&own_record[k * 8 + lane]) = own[lane];
-                *reinterpret_cast<F8*>(&in_record[t.in_place[lane]]) = other[lane];
+                *reinterpret_cast<F8*>(&own[k * 8 + lane]) = mine[lane];
+                *reinterpret_cast<F8*>(&ring[t.in_place[lane]]) = other[lane];
             }
         }
     }
@@ -252,8 +252,8 @@ void Engine::KernelOf<T>::wall_pass(std::size_t first, std::size_t last, double 
     }
 }
 
-#define GRADWRIGHT_PASSES(T, ADHESIVE, ROLLING)                                                \
-    template void Engine::KernelOf<T>::pair_pass<ADHESIVE, ROLLING>(std::size_t, std::size_t); \
+#define GRADWRIGHT_PASSES(T, ADHESIVE, ROLLING)                                                         \
+    template void Engine::KernelOf<T>::pair_pass<ADHESIVE, ROLLING>(std::size_t, std::size_t, Record*); \
     template void Engine::KernelOf<T>::wall_pass<ADHESIVE, ROLLING>(std::size_t, std::size_t, double);
 #define GRADWRIGHT_ALL_PASSES(T)                               \
     GRADWRIGHT_PASSES(T, true, RollingModel::none)             \

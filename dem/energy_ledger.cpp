@@ -248,10 +248,10 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         add_predicted(c.predicted, before.motion[i], &before.motion[j]);
         add_predicted(c.predicted_before, before.earlier[s0.id[i]], &before.earlier[s0.id[j]]);
         const auto& own = own_record[slot].value;
-        const auto& other = in_record[t1.in_place[lane]].value;
+        const auto& other = ring[t1.in_place[lane]].value;
         c.force = {double(own[0]), double(own[1]), double(own[2])};
-        c.torque_i = {double(own[3]), double(own[4]), double(own[5])};
-        c.torque_j = {double(other[3]), double(other[4]), double(other[5])};
+        c.torque_i = {double(own[4]), double(own[5]), double(own[6])};
+        c.torque_j = {double(other[4]), double(other[5]), double(other[6])};
         book(ledger, c, law, rolling, opening);
     }
 

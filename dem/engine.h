@@ -88,6 +88,8 @@ class Engine {
     /// persist.
     void refresh();
     void wake_all();
+    /// Sleep on or off from here on; grains that sleep go on sleeping.
+    void allow_sleep(bool allowed) { options_.sleep = allowed; }
     /// Multiply every velocity and spin (a quench while packing).
     void scale_velocities(double factor);
 
@@ -102,6 +104,7 @@ class Engine {
     long steps() const { return steps_; }
     double grain_steps() const { return grain_steps_; }
     double time_step() const { return options_.time_step; }
+    double sleep_time() const { return options_.sleep_time; }  ///< [s]
     const EngineTimes& times() const { return times_; }
     std::size_t mobile() const;
     std::size_t awake() const { return awake_.size(); }

@@ -277,6 +277,7 @@ SpreadResult spread_stage(const Scene& scene, const Stage& stage, const SpreadOp
             goal = end + std::min(heap_length(engine, scene, end, bed.facts.packing_fraction),
                                   0.9 * scene.second_land);
             goal = std::max(goal, end + 0.1e-3);
+            if (scene.early_stop) goal = end + 0.1e-3;
             goal_known = true;
         }
         const double fraction = std::clamp((blade_x() - start_x) / total, 0.0, 1.0);

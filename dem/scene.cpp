@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace gradwright {
 
 std::string text_hash(const std::string& text) {
@@ -12,6 +14,20 @@ std::string text_hash(const std::string& text) {
         hash *= 1099511628211ull;
     }
     return fmt::format("{:016x}", hash);
+}
+
+Scene coarse_grained(Scene scene, double factor) {
+    for (Powder& powder : scene.powder)
+        for (double* diameter : {&powder.size.d10, &powder.size.d50, &powder.size.d90, &powder.size.cut_low,
+                                 &powder.size.cut_high})
+            *diameter *= factor;
+    for (double* height : {&scene.bed_depth, &scene.dose_height, &scene.headspace[0], &scene.headspace[1],
+                           &scene.gap, &scene.layer_thickness, &scene.roughness, &scene.blade_tip_radius})
+        *height *= factor;
+    scene.dispenser_depth = std::max(scene.dispenser_depth, scene.bed_depth);
+    scene.blade_tip_radius = std::min(scene.blade_tip_radius, scene.blade_thickness);
+    scene.interaction.work_of_adhesion *= factor;
+    return scene;
 }
 
 std::string Scene::canonical_text() const {
@@ -62,6 +78,7 @@ std::string Scene::canonical_text() const {
     number("rayleigh_fraction", rayleigh_fraction);
     number("gravity", gravity);
     number("sleep", sleep);
+    if (early_stop) number("early_stop", 1);
     number("precision", static_cast<int>(precision));
     out += fmt::format("seed = {}\n", seed);
     return out;

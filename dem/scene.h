@@ -60,12 +60,20 @@ struct Scene {
     double rayleigh_fraction = 0.2;  ///< dt / T_R of the smallest grain
     double gravity = 9.81;           ///< [m/s2]
     bool sleep = true;               ///< grains at rest in a quiet neighbourhood are not computed
+    bool early_stop = false;  ///< the blade stops at the platform's end instead of carrying the heap off it
     Precision precision = Precision::single_law;
     std::uint64_t seed = 1;
 
     /// Every field as "key = value" lines with full precision: what the caches hash.
     std::string canonical_text() const;
 };
+
+/// The scene with grains `factor` times as large: fewer by factor^3, and a time step longer by factor.
+/// Grains, gap, layer, dose, headspace, roughness, blade tip and bed depth grow, lengths in plan stay,
+/// density stays, the work of adhesion grows by `factor`, which keeps the speed at which grains stick
+/// (physics.md 4). For the gradation only, never for packing: what a gap holds depends on grains per gap,
+/// which is kept, but also on how far powder flies, which is not. factor > 0; 1 changes nothing.
+Scene coarse_grained(Scene scene, double factor);
 
 /// FNV-1a 64-bit hash of a text, as 16 hex digits.
 std::string text_hash(const std::string& text);

@@ -53,7 +53,7 @@ std::vector<StabilityRow> stability_table();
 /// Edges in a dense heap of equal grains whose largest overlap is the 3 % that a run warns of [T_R of the
 /// smallest grain], rounded down from the table in docs/hard-cases.md (rolling models of that table, the
 /// lowest counts): e 0.5 and friction 0.64; e 0.05, where the normal dashpots alone reach their limit; e 1
-/// with friction, where nothing damps the tangential spring.
+/// with friction, where nothing damps the tangential spring. Beyond the first nothing is packed or spread.
 inline constexpr double kStabilityEdge = 0.4, kDampedEdge = 0.3, kUndampedEdge = 0.1;
 /// The edge that holds for an interaction: those three, linear in e between 0.05 and 0.5. Half of it is the
 /// largest time step that `validate` passes without a warning.

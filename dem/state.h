@@ -1,11 +1,17 @@
 // Grains as structure of arrays, in cell order; `id` is the grain's own number and never changes.
 #pragma once
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <cstdint>
+#include <new>
 #include <vector>
 
 namespace gradwright {
 
-/// Cache-line aligned storage for vector loads.
+/// Storage for vector loads: cache-line aligned, on large pages where it is large. The grains of a step are
+/// spread over thousands of small pages, more than the processor keeps the addresses of.
 template <class T>
 struct AlignedAllocator {
     using value_type = T;
@@ -13,9 +19,20 @@ struct AlignedAllocator {
     template <class U>
     AlignedAllocator(const AlignedAllocator<U>&) {}
     T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64)));
+        const std::size_t bytes = n * sizeof(T), alignment = alignment_of(bytes);
+        void* const p = ::operator new(bytes, std::align_val_t(alignment));
+#ifdef __linux__
+        if (alignment == kLargePage) madvise(p, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);  // a wish
+#endif
+        return static_cast<T*>(p);
     }
-    void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
+    void deallocate(T* p, std::size_t n) {
+        ::operator delete(p, std::align_val_t(alignment_of(n * sizeof(T))));
+    }
+    static constexpr std::size_t kLargePage = std::size_t{2} << 20;
+    static std::size_t alignment_of(std::size_t bytes) {
+        return bytes >= kLargePage ? kLargePage : 64;
+    }
     template <class U>
     bool operator==(const AlignedAllocator<U>&) const {
         return true;

@@ -11,53 +11,73 @@
 
 namespace gradwright {
 
+namespace {
+
+/// Force and torque of a sum, in double.
+inline void split(F8 sum, D4& force, D4& torque) {
+    force = __builtin_convertvector(__builtin_shufflevector(sum, sum, 0, 1, 2, 3), D4);
+    torque = __builtin_convertvector(__builtin_shufflevector(sum, sum, 4, 5, 6, 7), D4);
+}
+inline void split(D8 sum, D4& force, D4& torque) {
+    force = __builtin_shufflevector(sum, sum, 0, 1, 2, 3);
+    torque = __builtin_shufflevector(sum, sum, 4, 5, 6, 7);
+}
+/// Four numbers in the law's type.
+inline void put(D4 from, float* to) {
+    *reinterpret_cast<F4*>(to) = __builtin_convertvector(from, F4);
+}
+inline void put(D4 from, double* to) {
+    *reinterpret_cast<D4*>(to) = from;
+}
+
+}  // namespace
+
 template <class T>
-double Engine::KernelOf<T>::grain_pass(std::size_t first, std::size_t last, double kick, double frame) {
-    State& s = e.state_;
+double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, const Record* second,
+                                       std::int32_t mask, double kick, double frame) {
     const double dt = e.options_.time_step;
-    const auto g = e.options_.gravity;
-    const bool late = e.options_.fault.late_velocity;
+    const D4 gravity = {e.options_.gravity[0], e.options_.gravity[1], e.options_.gravity[2], 0};
+    const double half = e.options_.fault.late_velocity ? 0 : 0.5 * dt;
+    using Sum = typename Lane<T>::Sum;
     double top = 0, sum = 0;  // std::max drops what is not a number, a sum keeps it
-    for (std::size_t k = first; k < last; ++k) {
+    for (std::int32_t k = block.first_awake; k < block.end_awake; ++k) {
         const std::int32_t i = e.awake_[k];
-        using Sum = typename Lane<T>::Sum;
+        const bool last = (static_cast<std::size_t>(i) + 1) % kBlock == 0 ||
+                          static_cast<std::size_t>(i) + 1 == e.state_.size();  // of the block
         Sum f = {};
-        for (std::int32_t slot = own_first[i]; slot < own_first[i + 1]; ++slot)
-            f += *reinterpret_cast<const Sum*>(&own_record[slot]);
-        for (std::int32_t slot = in_first[i]; slot < in_first[i + 1]; ++slot)
-            f += *reinterpret_cast<const Sum*>(&in_record[slot]);
-        for (std::int32_t slot = wall_first[i]; slot < wall_first[i + 1]; ++slot) {
+        const std::int32_t own_end = last ? block.own_end : own_first[i + 1];
+        for (std::int32_t slot = own_first[i]; slot < own_end; ++slot)
+            f += *reinterpret_cast<const Sum*>(&own[slot]);
+        for (std::int32_t place = in_first[i]; place < in_first[i + 1]; ++place)
+            f += *reinterpret_cast<const Sum*>(&second[place & mask]);
+        const std::int32_t wall_end = last ? block.wall_end : wall_first[i + 1];
+        for (std::int32_t slot = wall_first[i]; slot < wall_end; ++slot) {
             const WallTile& t = walls[slot / W];
             const int lane = slot % W;
-            for (int c = 0; c < 6; ++c) f[c] += t.out[c][lane];
+            for (int c = 0; c < 3; ++c) f[c] += t.out[c][lane], f[4 + c] += t.out[3 + c][lane];
         }
-        const double m = inverse_mass[i], n = inverse_inertia[i];
-        const double ax = f[0] * m + g[0], ay = f[1] * m + g[1], az = f[2] * m + g[2];
-        const double bx = f[3] * n, by = f[4] * n, bz = f[5] * n;
-        s.vx[i] += kick * ax;
-        s.vy[i] += kick * ay;
-        s.vz[i] += kick * az;
-        s.wx[i] += kick * bx;
-        s.wy[i] += kick * by;
-        s.wz[i] += kick * bz;
-        s.x[i] += dt * s.vx[i];
-        s.y[i] += dt * s.vy[i];
-        s.z[i] += dt * s.vz[i];
-        const double forward = s.vx[i] - frame;
-        const double speed2 = forward * forward + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i];
+        D4 force, torque;
+        split(f, force, torque);
+        D4 v = moving[i].v, w = moving[i].w;
+        const D4 a = force * v[3] + gravity, b = torque * w[3];  // fourth lanes are zero
+        v += kick * a;
+        w += kick * b;
+        moving[i].v = v;
+        moving[i].w = w;
+        D4 way = v;
+        way[3] = 0;
+        D4 x = *reinterpret_cast<const D4*>(&position[i]);
+        x += dt * way;
+        *reinterpret_cast<D4*>(&position[i]) = x;
+        const double forward = v[0] - frame;
+        const double speed2 = forward * forward + v[1] * v[1] + v[2] * v[2];
         top = std::max(top, speed2);
         sum += speed2;
-        const double half = late ? 0 : 0.5 * dt;
-        position[i].x = s.x[i];
-        position[i].y = s.y[i];
-        position[i].z = s.z[i];
-        Motion& p = motion[i];
-        p.vx = S(s.vx[i] + half * ax);
-        p.vy = S(s.vy[i] + half * ay);
-        p.vz = S(s.vz[i] + half * az);
-        p.wx = S(s.wx[i] + half * bx);
-        p.wy = S(s.wy[i] + half * by);
-        p.wz = S(s.wz[i] + half * bz);
+        D4 next_v = v + half * a, next_w = w + half * b;
+        next_v[3] = x[3];  // the radius stands there
+        next_w[3] = 0;
+        put(next_v, &motion[i].vx);
+        put(next_w, &motion[i].wx);
     }
     return std::isfinite(sum) ? top : std::numeric_limits<double>::infinity();
 }
@@ -66,45 +86,74 @@ template <class T>
 template <bool kAdhesive, RollingModel kRolling>
 long Engine::KernelOf<T>::run_with(long steps) {
     const double dt = e.options_.time_step;
-    const std::size_t pair_tiles = (active_slots + W - 1) / W, wall_tiles = walls.size();
-    const std::size_t awake = e.awake_.size();
-    // fewer grains than this per thread cost more in waiting than they win
-    const int threads = static_cast<int>(std::clamp<std::size_t>(awake / 200, 1, e.threads_));
     const double frame = e.frame_speed(), body_top = e.body_speed(frame);
-
-    std::vector<double> tops(threads * 8, 0.0);
+    const auto count = static_cast<int>(shares.size());
+    std::vector<double> tops(static_cast<std::size_t>(count) * 8, 0.0);
     long done = 0;
     double travel = e.travel_, law_seconds = 0,
            grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
     const double body_time = e.body_time_;
     const bool first_kick = e.first_kick_;
-#pragma omp parallel num_threads(threads)
+    const bool whole_account = e.options_.energy_account;
+    const double start = omp_get_wtime();
+#pragma omp parallel num_threads(count)
     {
         double my_travel = e.travel_;
         long my_done = 0;
         const int me = omp_get_thread_num(), all = omp_get_num_threads();
-        auto share = [&](std::size_t count, int who) { return count * who / all; };
-        double clock = omp_get_wtime();
+        // Records by slot, as if all slots were kept: where slot 0 would lie.
+        const auto own_of = [&](const Share& share, const Block& block, bool tail) -> Record* {
+            if (whole_account) return own_record.data();
+            const std::ptrdiff_t from =
+                tail ? share.tail_own - std::ptrdiff_t(blocks[share.tail].first_tile) * W
+                     : share.own - std::ptrdiff_t(block.first_tile) * W;
+            return own_record.data() + from;
+        };
         for (long step = 0; step < steps; ++step) {
             const double bt = body_time + (e.bodies_move_ ? dt * step : 0);
-            pair_pass<kAdhesive, kRolling>(share(pair_tiles, me), share(pair_tiles, me + 1));
-            wall_pass<kAdhesive, kRolling>(share(wall_tiles, me), share(wall_tiles, me + 1), bt);
-#pragma omp barrier
-            if (me == 0) {
-                const double now = omp_get_wtime();
-                law_seconds += now - clock;
-                clock = now;
-            }
             const double kick = first_kick && step == 0 ? 0.5 * dt : dt;
-            tops[me * 8] = grain_pass(share(awake, me), share(awake, me + 1), kick, frame);
-#pragma omp barrier
-            if (me == 0) {
+            // what a stage costs is looked at in every eighth step, by the first thread
+            const bool clocked = me == 0 && step % 8 == 0;
+            double clock = clocked ? omp_get_wtime() : 0;
+            const auto lap = [&](double& seconds) {
+                if (!clocked) return;
                 const double now = omp_get_wtime();
-                grain_seconds += now - clock;
+                seconds += now - clock;
                 clock = now;
+            };
+            if (count > 1) {
+                for (int s = me; s < count; s += all)
+                    for (std::int32_t b = shares[s].tail; b < shares[s].end; ++b)
+                        pair_pass<kAdhesive, kRolling>(blocks[b].first_tile, blocks[b].end_tile,
+                                                       own_of(shares[s], blocks[b], true));
+#pragma omp barrier
+                lap(law_seconds);
+            }
+            for (int s = me; s < count; s += all) {
+                const Share& share = shares[s];
+                double top = 0;
+                for (std::int32_t b = share.first; b < share.end; ++b) {
+                    const Block& block = blocks[b];
+                    const bool tail = b >= share.tail;
+                    Record* const own = own_of(share, block, tail);
+                    if (!tail) pair_pass<kAdhesive, kRolling>(block.first_tile, block.end_tile, own);
+                    wall_pass<kAdhesive, kRolling>(block.first_wall, block.end_wall, bt);
+                    lap(law_seconds);
+                    const Record* const second =
+                        ring.data() +
+                        (tail ? share.tail_ring - std::ptrdiff_t(share.tail_place) : share.ring);
+                    top = std::max(top, grain_pass(block, own, second, tail ? -1 : ring_mask, kick, frame));
+                    // `force_on_fixed` is asked for after the last step only
+                    if (step == steps - 1) force_on_fixed_by_block[b] = force_on_fixed_of(block, own);
+                    lap(grain_seconds);
+                }
+                tops[s * 8] = top;
+            }
+            if (count > 1) {
+#pragma omp barrier
             }
             double top = 0;
-            for (int k = 0; k < all; ++k) top = std::max(top, tops[k * 8]);
+            for (int k = 0; k < count; ++k) top = std::max(top, tops[k * 8]);
             top = std::sqrt(top);
             my_travel +=
                 dt *
@@ -113,6 +162,16 @@ long Engine::KernelOf<T>::run_with(long steps) {
             // `not (a <= b)`: a speed that is not a number ends the block too
             if (!(my_travel <= e.near_skin_)) break;
         }
+        State& s = e.state_;
+        for (int k = me; k < count; k += all)
+            if (shares[k].first < shares[k].end)
+                for (std::int32_t a = blocks[shares[k].first].first_awake;
+                     a < blocks[shares[k].end - 1].end_awake; ++a) {
+                    const std::int32_t i = e.awake_[a];
+                    s.x[i] = position[i].x, s.y[i] = position[i].y, s.z[i] = position[i].z;
+                    s.vx[i] = moving[i].v[0], s.vy[i] = moving[i].v[1], s.vz[i] = moving[i].v[2];
+                    s.wx[i] = moving[i].w[0], s.wy[i] = moving[i].w[1], s.wz[i] = moving[i].w[2];
+                }
         if (me == 0) {
             travel = my_travel;
             done = my_done;
@@ -126,9 +185,10 @@ long Engine::KernelOf<T>::run_with(long steps) {
     e.body_way_ += body_top * dt * done;
     e.time_ += dt * done;
     if (e.bodies_move_) e.body_time_ += dt * done;
-    e.grain_steps_ += static_cast<double>(done) * static_cast<double>(awake);
-    e.times_.law += law_seconds;
-    e.times_.grains += grain_seconds;
+    e.grain_steps_ += static_cast<double>(done) * static_cast<double>(e.awake_.size());
+    const double seconds = omp_get_wtime() - start, looked = law_seconds + grain_seconds;
+    e.times_.law += looked > 0 ? seconds * law_seconds / looked : 0;
+    e.times_.grains += looked > 0 ? seconds * grain_seconds / looked : 0;
     return done;
 }
 
@@ -154,7 +214,5 @@ long Engine::KernelOf<T>::run(long steps) {
 
 template long Engine::KernelOf<double>::run(long);
 template long Engine::KernelOf<F8>::run(long);
-template double Engine::KernelOf<double>::grain_pass(std::size_t, std::size_t, double, double);
-template double Engine::KernelOf<F8>::grain_pass(std::size_t, std::size_t, double, double);
 
 }  // namespace gradwright

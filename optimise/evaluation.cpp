@@ -49,8 +49,9 @@ Footprint footprint_of(const Study& study, const Design& design) {
 }
 
 std::vector<double> bin_weights(const Study& study) {
-    const double margin = 2 * std::max(study.scene.powder[0].size.volume_quantile(0.9),
-                                       study.scene.powder[1].size.volume_quantile(0.9));
+    const double margin = 2 * study.full_coarsening *
+                          std::max(study.scene.powder[0].size.volume_quantile(0.9),
+                                   study.scene.powder[1].size.volume_quantile(0.9));
     const double slack = kRoundOff * study.bins.width;
     const double low = std::max(study.footprint.y_low, margin) - slack;
     const double high = std::min(study.footprint.y_high, study.dispenser_width - margin) + slack;

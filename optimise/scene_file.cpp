@@ -19,6 +19,7 @@ constexpr double kLargestSpeed = 10;        // [m/s]
 constexpr double kLargestModulus = 2000e9;  // [Pa]
 constexpr double kLargestDensity = 30000;   // [kg/m3]
 constexpr double kDensestPacking = 0.74;    // equal spheres cannot lie denser
+constexpr double kLargestCoarsening = 4;    // beyond it a layer is one grain
 constexpr double kGrainsAcross = 3;         // a dispenser narrower than 3 d does not flow (physics.md 7)
 
 const char* const kPaper =
@@ -438,7 +439,7 @@ void read_numerics(TomlReader& reader, Section& root, Study& study) {
     scene.rayleigh_fraction = time_step.number("rayleigh_fraction", {scene.rayleigh_fraction, "our default"},
                                                Range::above_to(0, 1));
     time_step.finish();
-    study.reductions = section.choices("reductions", {"fines_cut", "shallow_bed", "strip_map"},
+    study.reductions = section.choices("reductions", {kReductions.begin(), kReductions.end()},
                                        "nothing is left out of the physics");
     const auto reduced = [&study](const char* name) {
         return std::find(study.reductions.begin(), study.reductions.end(), name) != study.reductions.end();
@@ -454,6 +455,21 @@ void read_numerics(TomlReader& reader, Section& root, Study& study) {
             reader.amend(path + "cut_low", number(size.cut_low), "given", note);
             reader.amend(path + "cut_high", number(size.cut_high), "given", note);
         }
+
+    if (reduced("coarse_map") || reduced("coarse_grains")) {
+        study.map_coarsening = section.number("coarse_factor", {1.5, "reduction: grains 1.5 times as large"},
+                                              Range::between(1, kLargestCoarsening));
+        if (reduced("coarse_grains")) study.full_coarsening = study.map_coarsening;
+        study.warnings.push_back(fmt::format(
+            "{} with grains {} times as large: good for the gradation, not for packing, coverage or waste",
+            reduced("coarse_grains") ? "every spread is computed" : "the map is spread",
+            study.map_coarsening));
+    } else if (section.has("coarse_factor")) {
+        section.know("coarse_factor");
+        study.warnings.push_back(
+            "numerics.coarse_factor has no effect without the reduction \"coarse_map\" or \"coarse_grains\"");
+    }
+    scene.early_stop = reduced("early_stop");
 
     const double d50 = std::max(scene.powder[0].size.d50, scene.powder[1].size.d50);
     const double d_max = largest_grain(scene);
@@ -482,10 +498,10 @@ void read_numerics(TomlReader& reader, Section& root, Study& study) {
                     {"numerics.strip_width"},
                     fmt::format("must not exceed the dispenser's width {}", number(study.dispenser_width)),
                     "narrow the strip");
-            else if (study.strip_width < kGrainsAcross * d_max)
+            else if (study.strip_width < kGrainsAcross * d_max * study.map_coarsening)
                 reader.conflict({"numerics.strip_width"},
                                 fmt::format("must hold at least {} of the largest grains ({})", kGrainsAcross,
-                                            number(d_max)),
+                                            number(d_max * study.map_coarsening)),
                                 "widen the strip");
         }
     } else {

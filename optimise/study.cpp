@@ -17,7 +17,8 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
     for (int chamber = 0; chamber < 2; ++chamber)
         scene.headspace[chamber] = (1 - design.fill_fraction[chamber]) * scene.dispenser_depth;
     scene.seed = seed;
-    return scene;
+    const double coarsening = strip ? study.map_coarsening : study.full_coarsening;
+    return coarsening == 1 ? scene : coarse_grained(scene, coarsening);
 }
 
 double supply_ratio(const Scene& scene, double bed_packing, double layer_packing) {

@@ -59,6 +59,16 @@ struct Objective {
     double min_coverage = 0.95;
 };
 
+/// What may be left out of the physics, by name (numerics.reductions).
+inline constexpr std::array<const char*, 6> kReductions = {
+    "fines_cut",      // only sizes from D10 to D90
+    "shallow_bed",    // 3 D50 of powder below the rim instead of 8
+    "strip_map",      // the map is spread on a narrow periodic strip
+    "coarse_map",     // the map is spread with larger grains (numerics.coarse_factor)
+    "coarse_grains",  // every spread is
+    "early_stop",     // the blade stops at the platform's end
+};
+
 struct Study {
     std::string name;  ///< file stem, or [study] name
     std::string file;  ///< path as given
@@ -72,7 +82,9 @@ struct Study {
     bool gap_steady = true;               ///< gap = layer_thickness / steady_packing
     bool allow_starved = false;           ///< supply ratio < 1.05 allowed
     double strip_width = 0.4e-3;          ///< periodic strip of the map [m]
-    std::vector<std::string> reductions;  ///< named: "fines_cut", "shallow_bed", "strip_map"
+    std::vector<std::string> reductions;  ///< named: see kReductions
+    double map_coarsening = 1;            ///< grains of the map's spreads, in real grains [-]
+    double full_coarsening = 1;           ///< of every other spread
     Target target;
     Footprint footprint;  ///< default: the whole platform
     BinGrid bins;         ///< default 0.2 mm over the width

@@ -39,13 +39,8 @@ std::string json_block(const nlohmann::json& data) {
 
 }  // namespace
 
-std::string report_html(const nlohmann::json& data) {
-    if (!data.is_object() || data.value("format", "") != "gradwright-report-1")
-        throw std::invalid_argument(
-            "not report data of this program: the field `format` must be \"gradwright-report-1\"");
-    const std::string name = data.at("result").value("study", "");
-    const auto& words = data.at("words");
-    const std::string state = words.value("state", "failed");
+std::string page_html(const PageParts& parts, const nlohmann::json& data,
+                      const std::vector<std::string_view>& scripts) {
     std::string html;
     html += "<!doctype html>\n<html lang=\"en-GB\">\n<head>\n<meta charset=\"utf-8\">\n";
     html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
@@ -55,30 +50,49 @@ std::string report_html(const nlohmann::json& data) {
         "'unsafe-inline'; style-src "
         "'unsafe-inline'; img-src data: blob:\">\n";
     html += "<link rel=\"icon\" href=\"data:,\">\n";
-    html += "<title>" + escaped(name) + ": " + escaped(words.value("headline", "")) +
-            " | Gradwright</title>\n<style>\n";
+    html += "<title>" + escaped(parts.title) + " | Gradwright</title>\n<style>\n";
     html += between(gradwright_page_css, gradwright_page_css_end);
-    html += "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#figures\">Skip to the figures</a>\n";
-    html += "<header class=\"" + escaped(state) +
-            "\">\n<p class=\"maker\">Gradwright design report</p>\n<h1>" + escaped(name) + "</h1>\n";
-    html += "<p class=\"target\">" + escaped(data.at("result").value("target", "")) + "</p>\n";
-    html += "<div class=\"verdict\" id=\"verdict\"><p class=\"headline\">" +
-            escaped(words.value("headline", "")) + "</p><p>" + escaped(words.value("verdict", "")) +
-            "</p></div>\n</header>\n";
+    html += "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#" + parts.first_figure +
+            "\">Skip to the figures</a>\n";
+    html += "<header class=\"" + escaped(parts.state) + "\">\n<p class=\"maker\">" + escaped(parts.maker) +
+            "</p>\n<h1>" + escaped(parts.heading) + "</h1>\n";
+    html += "<p class=\"target\">" + escaped(parts.subheading) + "</p>\n";
+    html += "<div class=\"verdict\" id=\"verdict\"><p class=\"headline\">" + escaped(parts.headline) +
+            "</p><p>" + escaped(parts.words) + "</p></div>\n</header>\n";
     html +=
         "<main id=\"page\"></main>\n<noscript><p>The figures are drawn by the page's own script; switch "
         "scripts on to see them.</p>"
         "</noscript>\n";
-    html += "<script type=\"application/json\" id=\"data\">" + json_block(data) + "</script>\n<script>\n";
-    html += between(gradwright_d3_js, gradwright_d3_js_end);
-    html += "\n</script>\n<script>\n";
-    html += between(gradwright_plot_js, gradwright_plot_js_end);
-    html += "\n</script>\n<script>\n";
-    html += between(gradwright_grains_js, gradwright_grains_js_end);
-    html += "\n</script>\n<script>\n";
-    html += between(gradwright_page_js, gradwright_page_js_end);
-    html += "\n</script>\n</body>\n</html>\n";
+    html += "<script type=\"application/json\" id=\"data\">" + json_block(data) + "</script>\n";
+    const auto script = [&](std::string_view text) {
+        html += "<script>\n";
+        html += text;
+        html += "\n</script>\n";
+    };
+    script(between(gradwright_d3_js, gradwright_d3_js_end));
+    script(between(gradwright_plot_js, gradwright_plot_js_end));
+    for (const std::string_view text : scripts) script(text);
+    html += "</body>\n</html>\n";
     return html;
+}
+
+std::string report_html(const nlohmann::json& data) {
+    if (!data.is_object() || data.value("format", "") != "gradwright-report-1")
+        throw std::invalid_argument(
+            "not report data of this program: the field `format` must be \"gradwright-report-1\"");
+    const auto& words = data.at("words");
+    PageParts parts;
+    parts.heading = data.at("result").value("study", "");
+    parts.headline = words.value("headline", "");
+    parts.title = parts.heading + ": " + parts.headline;
+    parts.maker = "Gradwright design report";
+    parts.subheading = data.at("result").value("target", "");
+    parts.words = words.value("verdict", "");
+    parts.state = words.value("state", "failed");
+    parts.first_figure = "figures";
+    return page_html(parts, data,
+                     {between(gradwright_grains_js, gradwright_grains_js_end),
+                      between(gradwright_page_js, gradwright_page_js_end)});
 }
 
 void write_report(const nlohmann::json& data, const std::string& html_path) {

@@ -140,8 +140,8 @@ TEST(RunStatus, ends_in_the_exit_code_of_the_interface) {
     EXPECT_EQ(exit_code_of(health), ExitCode::met);
     health.status = "interrupted";
     EXPECT_EQ(exit_code_of(health), ExitCode::interrupted);
-    for (const char* status :
-         {"diverged", "jammed", "does_not_flow", "starved", "not_settled", "overlap", "not_run"}) {
+    for (const char* status : {"diverged", "unstable_step", "jammed", "does_not_flow", "starved",
+                               "not_settled", "overlap", "not_run"}) {
         health.status = status;
         EXPECT_EQ(exit_code_of(health), ExitCode::simulation_failed) << status;
     }

@@ -55,6 +55,20 @@ void expect_same_bits(const Bed& a, const Bed& b) {
     EXPECT_EQ(a.facts.made_d10_d50_d90, b.facts.made_d10_d50_d90);
 }
 
+TEST(Packing, a_bed_so_soft_that_its_steps_are_long_settles_too) {
+    // 750 steps are longer than the time after which grains sleep: what sleeps would press on nothing
+    Scene scene = smallest_scene();
+    scene.softening = 1e-5;
+    scene.interaction.work_of_adhesion = 0;
+    SpreadOptions options;
+    options.threads = 1;
+    RunHealth health;
+    const Bed bed = pack_bed(scene, nullptr, options, health);
+    EXPECT_EQ(health.status, "ok") << health.reason;
+    EXPECT_NEAR(bed.facts.carried_weight_ratio, 1, 0.01);
+    EXPECT_GT(750 * scene_time_step(scene), 0.3e-3);
+}
+
 TEST(Packing, a_bed_settles_and_its_facts_say_so) {
     const Scene scene = tiny_scene();
     SpreadOptions options;
@@ -185,13 +199,13 @@ TEST_F(Cache, a_kept_bed_has_the_bits_of_the_packed_one_and_a_damaged_one_is_mad
     EXPECT_TRUE(bed().facts.from_cache);
 }
 
-TEST(Failure, a_time_step_beyond_the_edge_ends_as_diverged_with_the_knob) {
+TEST(Failure, a_time_step_beyond_the_edge_is_refused_with_the_knob) {
     Scene scene = smallest_scene();
-    scene.rayleigh_fraction = 6;
+    scene.rayleigh_fraction = 0.41;
     SpreadOptions options;
     options.threads = 1;
     const auto result = run_spread(scene, nullptr, options);
-    EXPECT_EQ(result.health.status, "diverged");
+    EXPECT_EQ(result.health.status, "unstable_step");
     EXPECT_THAT(result.health.reason, testing::HasSubstr("rayleigh_fraction"));
     EXPECT_EQ(result.layer.size(), 0u);
 }
@@ -271,6 +285,50 @@ TEST_F(Spread, each_material_of_the_scene_has_its_own_mass_and_stiffness_in_the_
     const double reduced = 0.91 * (1 / 210e5 + 1 / 195e5);  // (1 - nu^2)(1/E1 + 1/E2), E softened by 1e-4
     EXPECT_NEAR(engine.pair_constants(0, 1).e_star * reduced, 1, 1e-12);
     EXPECT_NEAR(engine.pair_constants(0, 0).e_star * 2 * 0.91 / 210e5, 1, 1e-12);
+}
+
+TEST(Reductions, coarse_grains_keep_the_plan_and_scale_what_stands_upright) {
+    const Scene fine = tiny_scene();
+    const Scene coarse = coarse_grained(fine, 1.5);
+    EXPECT_EQ(coarse_grained(fine, 1).canonical_text(), fine.canonical_text());
+    for (const auto& [grown, was] :
+         {std::pair{coarse.gap, fine.gap},
+          {coarse.layer_thickness, fine.layer_thickness},
+          {coarse.dose_height, fine.dose_height},
+          {coarse.bed_depth, fine.bed_depth},
+          {coarse.roughness, fine.roughness},
+          {coarse.powder[1].size.d90, fine.powder[1].size.d90},
+          {coarse.powder[0].size.cut_low, fine.powder[0].size.cut_low},
+          {coarse.interaction.work_of_adhesion, fine.interaction.work_of_adhesion}})
+        EXPECT_DOUBLE_EQ(grown, 1.5 * was);
+    EXPECT_EQ(coarse.dispenser_length, fine.dispenser_length);
+    EXPECT_EQ(coarse.width, fine.width);
+    EXPECT_EQ(coarse.land, fine.land);
+    EXPECT_EQ(coarse.platform_length, fine.platform_length);
+    EXPECT_EQ(coarse.powder[0].material.density, fine.powder[0].material.density);
+    // bed and heights grow with the grain, the plan does not: 1/k^2 of the grains, a time step k times as
+    // long
+    const SceneCost a = estimate_cost(fine), b = estimate_cost(coarse);
+    EXPECT_NEAR(b.grains / a.grains, 1 / 2.25, 0.01);
+    EXPECT_NEAR(scene_time_step(coarse) / scene_time_step(fine), 1.5, 1e-12);
+    EXPECT_LT(b.grain_steps, a.grain_steps / 2.25 / 1.3);
+    // what the same powder sticks at: Gamma/(rho d v^2) is kept
+    EXPECT_DOUBLE_EQ(coarse.interaction.work_of_adhesion / coarse.powder[0].size.d50,
+                     fine.interaction.work_of_adhesion / fine.powder[0].size.d50);
+}
+
+TEST(Reductions, an_early_stop_spares_steps_and_lays_the_same_grains_but_for_the_last_of_them) {
+    Scene scene = tiny_scene();
+    SpreadOptions options;
+    options.threads = 1;
+    const SpreadResult whole = run_spread(scene, nullptr, options);
+    scene.early_stop = true;
+    const SpreadResult early = run_spread(scene, nullptr, options);
+    ASSERT_TRUE(whole.health.ok()) << whole.health.reason;
+    ASSERT_TRUE(early.health.ok()) << early.health.reason;
+    EXPECT_LT(early.steps, whole.steps);
+    EXPECT_NEAR(double(early.layer.size()), double(whole.layer.size()), 0.1 * double(whole.layer.size()));
+    EXPECT_NE(scene.canonical_text(), tiny_scene().canonical_text()) << "the caches must tell them apart";
 }
 
 }  // namespace

@@ -248,6 +248,26 @@ TEST(study_reductions, shallow_bed_is_three_median_grains_deep) {
     EXPECT_DOUBLE_EQ(study.scene.bed_depth, 120e-6);
 }
 
+TEST(study_reductions, coarse_grains_in_the_map_or_everywhere) {
+    const std::string numerics = "[numerics]\nreductions = [\"strip_map\", ";
+    const Study map = parsed(numerics + "\"coarse_map\"]\n");
+    EXPECT_DOUBLE_EQ(map.map_coarsening, 1.5);
+    EXPECT_DOUBLE_EQ(map.full_coarsening, 1);
+    const Design design = {};
+    EXPECT_DOUBLE_EQ(scene_of(map, design, true, 1).powder[0].size.d50,
+                     1.5 * scene_of(map, design, false, 1).powder[0].size.d50);
+    EXPECT_THAT(map.warnings, Contains(HasSubstr("not for packing")));
+    const Study everywhere =
+        parsed(numerics + "\"coarse_grains\"]\nstrip_width = \"0.8 mm\"\ncoarse_factor = 2\n");
+    EXPECT_DOUBLE_EQ(everywhere.map_coarsening, 2);
+    EXPECT_DOUBLE_EQ(everywhere.full_coarsening, 2);
+    EXPECT_DOUBLE_EQ(scene_of(everywhere, design, false, 1).gap, 2 * scene_of(map, design, false, 1).gap);
+    EXPECT_THAT(parsed("[numerics]\ncoarse_factor = 2\n").warnings, Contains(HasSubstr("has no effect")));
+    EXPECT_THAT(messages(kShort + numerics + "\"coarse_map\"]\ncoarse_factor = 9\n", "x.toml"),
+                Contains(HasSubstr("numerics.coarse_factor = 9: must lie in [1, 4]")));
+    EXPECT_TRUE(parsed(numerics + "\"early_stop\"]\n").scene.early_stop);
+}
+
 TEST(study_reductions, strip_map_is_ten_median_grains_wide) {
     const Study study = parsed("[numerics]\nreductions = [\"strip_map\"]\n");
     EXPECT_DOUBLE_EQ(study.strip_width, 0.4e-3);
