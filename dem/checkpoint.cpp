@@ -62,6 +62,7 @@ void Engine::KernelOf<T>::archive(Archive& to) {
     to.array(position);
     to.array(motion);
     to.array(tiles);
+    to.array(rolls);
     to.array(walls);
     to.array(own_first);
     to.array(in_first);

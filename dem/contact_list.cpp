@@ -113,6 +113,7 @@ void Engine::KernelOf<T>::rebuild_near() {
     const std::size_t n = s.size();
     if (e.candidate_slot_.size() != e.candidate_.size()) e.candidate_slot_.assign(e.candidate_.size(), -1);
     tiles.swap(old_tiles);
+    rolls.swap(old_rolls);
     keep.resize(e.candidate_.size());
     own_first.assign(n + 1, 0);
     park_first.assign(n + 1, 0);
@@ -170,6 +171,7 @@ void Engine::KernelOf<T>::rebuild_near() {
     parked_slots = park_first[n];
     const std::size_t active_tiles = (active_slots + W - 1) / W, parked_tiles = (parked_slots + W - 1) / W;
     tiles.resize(active_tiles + parked_tiles);
+    if (has_rolls) rolls.resize(tiles.size());
 
     const int material_count = static_cast<int>(e.options_.materials.size());
     auto pad = [&](std::size_t from, std::size_t to) {
@@ -180,7 +182,9 @@ void Engine::KernelOf<T>::rebuild_near() {
             t.j[lane] = static_cast<std::int32_t>(n + 1);
             t.radius[lane] = t.mass[lane] = t.e_star[lane] = t.g_star8[lane] = t.jkr_radius[lane] = 1;
             t.touching[lane] = 0;
-            for (int k = 0; k < 3; ++k) t.xi[k][lane] = t.roll[k][lane] = 0;
+            for (int k = 0; k < 3; ++k) t.xi[k][lane] = 0;
+            if (has_rolls)
+                for (int k = 0; k < 3; ++k) rolls[slot / W].angle[k][lane] = 0;
         }
     };
     const auto fill = [&](std::size_t i) {
@@ -220,10 +224,10 @@ void Engine::KernelOf<T>::rebuild_near() {
             }
             t.touching[lane] = o ? o->touching[from] : S(0);
             const S turn = code >= 0 ? S(1) : S(-1);  // springs change sign with the pair's orientation
-            for (int k = 0; k < 3; ++k) {
-                t.xi[k][lane] = o ? turn * o->xi[k][from] : S(0);
-                t.roll[k][lane] = o ? turn * o->roll[k][from] : S(0);
-            }
+            for (int k = 0; k < 3; ++k) t.xi[k][lane] = o ? turn * o->xi[k][from] : S(0);
+            if (has_rolls)
+                for (int k = 0; k < 3; ++k)
+                    rolls[slot / W].angle[k][lane] = o ? turn * old_rolls[old / W].angle[k][from] : S(0);
             e.candidate_slot_[c] = static_cast<std::int32_t>(slot);
             if (keep[c] == 1) reach = std::max(reach, j);
         }
@@ -553,9 +557,10 @@ std::size_t Engine::KernelOf<T>::contacts_beyond(double limit) const {
 template <class T>
 double Engine::KernelOf<T>::memory_bytes() const {
     auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-    return bytes(position) + bytes(motion) + bytes(moving) + bytes(tiles) + bytes(old_tiles) + bytes(walls) +
-           bytes(old_walls) + bytes(own_first) + bytes(in_first) + bytes(own_record) + bytes(ring) +
-           bytes(wall_first) + bytes(keep) + bytes(park_first) + bytes(blocks);
+    return bytes(position) + bytes(motion) + bytes(moving) + bytes(tiles) + bytes(old_tiles) + bytes(rolls) +
+           bytes(old_rolls) + bytes(walls) + bytes(old_walls) + bytes(own_first) + bytes(in_first) +
+           bytes(own_record) + bytes(ring) + bytes(wall_first) + bytes(keep) + bytes(park_first) +
+           bytes(blocks);
 }
 
 template struct Engine::KernelOf<double>;

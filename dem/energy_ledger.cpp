@@ -165,6 +165,7 @@ void book(EnergyLedger& ledger, const BookedContact& c, const LawConstants& law,
 template <class T>
 void Engine::KernelOf<T>::remember_for_energy() {
     before.tiles = tiles;
+    before.rolls = rolls;
     before.walls = walls;
     before.state = e.state_;
     before.motion = motion;
@@ -220,8 +221,6 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         c.touching = t1.touching[lane] > 0;
         c.xi_before = read(t0.xi, lane);
         c.xi = read(t1.xi, lane);
-        c.roll_before = read(t0.roll, lane);
-        c.roll = read(t1.roll, lane);
     };
 
     for (std::size_t slot = 0; slot < active_slots; ++slot) {
@@ -231,6 +230,10 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         const std::int32_t i = t1.i[lane], j = t1.j[lane];
         BookedContact c;
         common(c, t0, t1, lane);
+        if (has_rolls) {
+            c.roll_before = read(before.rolls[slot / W].angle, lane);
+            c.roll = read(rolls[slot / W].angle, lane);
+        }
         auto between = [&](Vector d, Vector& normal) {
             for (int k = 0; k < 3; ++k)
                 if (period[k] > 0) d[k] -= period[k] * std::nearbyint(d[k] / period[k]);
@@ -263,6 +266,8 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         const Body& body = e.bodies_[t1.body[lane]];
         BookedContact c;
         common(c, t0, t1, lane);
+        c.roll_before = read(t0.roll, lane);
+        c.roll = read(t1.roll, lane);
         const double r = s0.radius[i];
         if (body.yield_ratio > 0) c.limit = body.yield_ratio * r;
         c.frictionless = body.frictionless;

@@ -71,8 +71,12 @@ struct Engine::KernelOf final : Engine::Kernel {
         std::int32_t i[W], j[W];
         S radius[W], mass[W], e_star[W], g_star8[W], jkr_radius[W];
         S touching[W];
-        S xi[3][W], roll[3][W];
+        S xi[3][W];
         std::int32_t in_place[W];  ///< where in `ring` the second grain's record goes
+    };
+    /// Rolling springs of W near pairs, beside their tile; none where the rolling model has no springs.
+    struct alignas(32) RollTile {
+        S angle[3][W];
     };
     /// What a contact gives one grain: force, 0, torque, 0. 32 bytes for the wide law, so that a sum is one
     /// add a contact.
@@ -106,13 +110,18 @@ struct Engine::KernelOf final : Engine::Kernel {
         std::int32_t tail_own = 0;    ///< ... then the tail's
     };
 
-    explicit KernelOf(Engine& engine) : e(engine) {}
+    explicit KernelOf(Engine& engine)
+        : e(engine),
+          has_rolls(engine.options_.interaction.rolling_friction > 0 &&
+                    engine.options_.interaction.rolling_model == RollingModel::spring) {}
 
     Engine& e;
+    const bool has_rolls;
     AlignedVector<Position> position;
     AlignedVector<Motion> motion;
     AlignedVector<Moving> moving;
     AlignedVector<PairTile> tiles, old_tiles;
+    AlignedVector<RollTile> rolls, old_rolls;
     AlignedVector<WallTile> walls, old_walls;
     AlignedVector<Record> own_record, ring;
     std::int32_t ring_mask = 0;
@@ -168,6 +177,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// The run before the step that is booked; filled only with `energy_account`.
     struct Before {
         AlignedVector<PairTile> tiles;
+        AlignedVector<RollTile> rolls;
         AlignedVector<WallTile> walls;
         State state;
         AlignedVector<Motion> motion;

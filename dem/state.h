@@ -19,10 +19,12 @@ struct AlignedAllocator {
     template <class U>
     AlignedAllocator(const AlignedAllocator<U>&) {}
     T* allocate(std::size_t n) {
-        const std::size_t bytes = n * sizeof(T), alignment = alignment_of(bytes);
+        std::size_t bytes = n * sizeof(T);
+        const std::size_t alignment = alignment_of(bytes);
+        if (alignment == kLargePage) bytes = (bytes + kLargePage - 1) / kLargePage * kLargePage;
         void* const p = ::operator new(bytes, std::align_val_t(alignment));
 #ifdef __linux__
-        if (alignment == kLargePage) madvise(p, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);  // a wish
+        if (alignment == kLargePage) madvise(p, bytes, MADV_HUGEPAGE);  // a wish
 #endif
         return static_cast<T*>(p);
     }
@@ -31,7 +33,7 @@ struct AlignedAllocator {
     }
     static constexpr std::size_t kLargePage = std::size_t{2} << 20;
     static std::size_t alignment_of(std::size_t bytes) {
-        return bytes >= kLargePage ? kLargePage : 64;
+        return bytes >= kLargePage / 4 ? kLargePage : 64;
     }
     template <class U>
     bool operator==(const AlignedAllocator<U>&) const {
