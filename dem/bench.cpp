@@ -54,18 +54,40 @@ BenchCase timed(Engine& engine, const std::string& name, int threads, long steps
     return c;
 }
 
-/// The packed bed on its floor. Settled: at rest under its weight. Flowing: under ten times its weight at 60
-/// degrees across the periodic width, until it slides over its floor as fast as the blade would push it.
-BenchCase of_bed(const Scene& scene, const Bed& bed, bool flowing, int threads, const BenchOptions& options) {
+/// `copies` of a bed of period `width` side by side along y.
+Bed side_by_side(const Bed& one, double width, int copies) {
+    Bed out = one;
+    for (int copy = 1; copy < copies; ++copy)
+        for (std::size_t k = 0; k < one.x.size(); ++k) {
+            out.x.push_back(one.x[k]);
+            out.y.push_back(one.y[k] + copy * width);
+            out.z.push_back(one.z[k]);
+            out.radius.push_back(one.radius[k]);
+            out.material.push_back(one.material[k]);
+        }
+    return out;
+}
+
+/// The packed bed on its floor, `copies` times side by side. Settled: at rest under its weight. Flowing:
+/// under ten times its weight at 60 degrees across the periodic width, until it slides over its floor as fast
+/// as the blade would push it.
+BenchCase of_bed(const Scene& tile, const Bed& one, int copies, bool flowing, int threads,
+                 const BenchOptions& options) {
+    Scene scene = tile;
+    scene.width *= copies;
+    const Bed bed = side_by_side(one, tile.width, copies);
     EngineOptions eo = engine_options(scene, threads);
     if (flowing) {
         const double g = 10 * scene.gravity;
         eo.gravity = {0, g * std::sin(std::numbers::pi / 3), -g * std::cos(std::numbers::pi / 3)};
     }
     Engine engine(eo);
-    for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth,
-                                       scene.roughness, scene.seed ^ 0xf100f))
-        engine.add_grain(g);
+    for (int copy = 0; copy < copies; ++copy)
+        for (auto g : rough_surface(0, tile.dispenser_length, tile.width, -tile.bed_depth, tile.roughness,
+                                    tile.seed ^ 0xf100f)) {
+            g.y += copy * tile.width;
+            engine.add_grain(g);
+        }
     add_bed(engine, bed, false);
     add_end_walls(engine, scene);
     add_side_walls(engine, scene);
@@ -120,6 +142,10 @@ BenchResult run_bench(const BenchOptions& options) {
         const double area = wanted * 1.08 / per_area;
         if (area < scene.dispenser_length * 0.4e-3) scene.dispenser_length = area / 0.4e-3;
         scene.width = area / scene.dispenser_length;
+        const auto spreads = std::count(options.states.begin(), options.states.end(), "spread");
+        const int copies =
+            spreads > 0 ? 1 : std::max(1, static_cast<int>(std::ceil(wanted / options.largest_packed)));
+        scene.width /= copies;
         SpreadOptions so;
         so.cache_folder = options.cache_folder;
         if (options.progress)
@@ -127,7 +153,6 @@ BenchResult run_bench(const BenchOptions& options) {
                 options.progress(fmt::format("{:.0f} grains: {}", wanted, p.stage), p.fraction);
             };
         RunHealth health;
-        const auto spreads = std::count(options.states.begin(), options.states.end(), "spread");
         const bool rests = spreads < static_cast<std::ptrdiff_t>(options.states.size());
         const Bed bed = rests ? cached_bed(scene, nullptr, so, health) : Bed{};
         if (rests && !health.ok()) throw std::runtime_error("bench: " + health.status + ": " + health.reason);
@@ -138,7 +163,7 @@ BenchResult run_bench(const BenchOptions& options) {
             for (const int threads : options.threads)
                 out.cases.push_back(state == "spread"
                                         ? of_spread(scene, stage, threads, options)
-                                        : of_bed(scene, bed, state == "flowing", threads, options));
+                                        : of_bed(scene, bed, copies, state == "flowing", threads, options));
     }
     return out;
 }

@@ -14,6 +14,9 @@ struct BenchOptions {
     std::vector<int> threads = {1};
     std::vector<std::string> states = {"settled"};  ///< settled | flowing | spread
     long steps = 2000;                              ///< timed steps a case
+    /// Beds of more grains are copies of a smaller one side by side: it is periodic across, so they meet
+    /// without a seam, and a million grains need not be settled. Not for "spread".
+    double largest_packed = 40000;
     Scene scene;               ///< physics: powders, law, time step; lengths are chosen from the size
     std::string cache_folder;  ///< settled beds
     std::function<void(const std::string& stage, double fraction)> progress;

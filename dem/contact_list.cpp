@@ -285,7 +285,8 @@ void Engine::KernelOf<T>::share_out() {
     // How far ahead of the sweep records are handed, from all blocks before.
     std::vector<std::int32_t> reach(count);
     for (std::int32_t b = 0, top = -1; b < count; ++b) reach[b] = top = std::max(top, blocks[b].reach);
-    std::int32_t span = 1, most_slots = 0;
+    const auto pairs_of = [&](std::int32_t b) { return blocks[b].end_tile - blocks[b].first_tile; };
+    std::int32_t longest = 0;  // tail, in tiles
     for (Share& share : shares) {
         share.tail = share.end;
         for (std::int32_t b = share.first; b < share.end; ++b)
@@ -293,10 +294,21 @@ void Engine::KernelOf<T>::share_out() {
                 share.tail = b;
                 break;
             }
+        std::int32_t tiles_of_tail = 0;
+        for (std::int32_t b = share.tail; b < share.end; ++b) tiles_of_tail += pairs_of(b);
+        longest = std::max(longest, tiles_of_tail);
+    }
+    std::int32_t span = 1, most_slots = 0;
+    for (Share& share : shares) {
+        // While the longest tail is computed the others do not wait: theirs is made as long.
+        std::int32_t tiles_of_tail = 0;
+        for (std::int32_t b = share.tail; b < share.end; ++b) tiles_of_tail += pairs_of(b);
+        while (share.tail > share.first && tiles_of_tail + pairs_of(share.tail - 1) / 2 < longest)
+            tiles_of_tail += pairs_of(--share.tail);
         for (std::int32_t b = share.first; b < share.tail; ++b) {
             const std::int32_t to = in_first[std::min(reach[b] + 1, first_grain(share.tail))];
             span = std::max(span, to - in_first[first_grain(b)]);
-            most_slots = std::max(most_slots, (blocks[b].end_tile - blocks[b].first_tile) * W);
+            most_slots = std::max(most_slots, pairs_of(b) * W);
         }
     }
     // The energy account reads every record after the step: none may be overwritten.

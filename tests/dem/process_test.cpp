@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "dem/bed.h"
+#include "dem/bench.h"
 #include "dem/engine.h"
 
 namespace gradwright {
@@ -329,6 +330,23 @@ TEST(Reductions, an_early_stop_spares_steps_and_lays_the_same_grains_but_for_the
     EXPECT_LT(early.steps, whole.steps);
     EXPECT_NEAR(double(early.layer.size()), double(whole.layer.size()), 0.1 * double(whole.layer.size()));
     EXPECT_NE(scene.canonical_text(), tiny_scene().canonical_text()) << "the caches must tell them apart";
+}
+
+TEST(Bench, a_large_bed_is_copies_of_a_small_one_without_a_seam) {
+    BenchOptions options;
+    options.scene = smallest_scene();
+    options.grains = {150};
+    options.steps = 300;
+    const BenchCase one = run_bench(options).cases.at(0);
+    // twice the width in two copies: the same tile twice, pressed and touching as in the one
+    options.grains = {300};
+    options.largest_packed = 150;
+    const BenchCase two = run_bench(options).cases.at(0);
+    EXPECT_EQ(two.grains, 2 * one.grains);
+    EXPECT_NEAR(two.contacts_per_grain, one.contacts_per_grain, 0.1);
+    EXPECT_EQ(two.awake_share, 1);
+    options.threads = {2};
+    EXPECT_EQ(run_bench(options).cases.at(0).state_hash, two.state_hash);
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Writes the tables of docs/speed-against-error.md from runs of the program. Usage, from the project's root:
+
+    python3 docs/make_speed.py [tradeoff] [threads] [sizes]
+
+Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` takes
+about an hour on two free cores, `threads` a minute once its bed is cached, `sizes` some minutes. Nothing else may run meanwhile.
+GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+RUNS = os.path.join(ROOT, "runs", "speed")
+PAGE = os.path.join(ROOT, "docs", "speed-against-error.md")
+PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
+
+TRADEOFF = ["tradeoff", "examples/01_linear_coupon.toml", "--around", "study", "--seeds", "2"]
+THREADS = ["bench", "--grains", "17000", "--threads", "1", "--threads", "2", "--state", "settled", "--state", "flowing", "--steps", "2000"]
+SIZES = ["bench", "--grains", "7000", "--grains", "20000", "--grains", "70000", "--grains", "200000", "--grains", "700000", "--threads", "1", "--steps", "100"]
+
+
+def answer(name, words):
+    kept = os.path.join(RUNS, name + ".json")
+    if not os.path.exists(kept):
+        os.makedirs(RUNS, exist_ok=True)
+        command = [PROGRAM, *words, "--json"]
+        if words[0] == "tradeoff":
+            command += ["--force", "--out", os.path.join(RUNS, name)]
+        print("running:", " ".join(command), file=sys.stderr, flush=True)
+        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE)
+        if done.returncode != 0:
+            sys.exit(f"ended with exit code {done.returncode}")
+        with open(kept, "wb") as file:
+            file.write(done.stdout)
+    with open(kept) as file:
+        return json.load(file)
+
+
+def shown(words):
+    return "`./gradwright " + " ".join(words) + "`"
+
+
+def tradeoff_table():
+    a = answer("tradeoff", TRADEOFF)
+    rows = [f"{shown(TRADEOFF)} ({a['seeds']} beds a level, {a['provenance']['host']['threads']} threads, {a['provenance']['host']['isa']}):\n",
+            "| level | grains | steps | awake grain-steps | seconds | speed-up | GI rms to the finest | noise floor | packing | largest overlap / r | |", "|---|---|---|---|---|---|---|---|---|---|---|"]
+    for l in a["levels"]:
+        if l["grains"] is None:
+            rows.append(f"| {l['name']} | | | | | | | | | | {l['status']}: {l['reason']} |")
+            continue
+        word = "recommended" if l["name"] == a["recommended"] else "" if l["name"] == "finest" else "beyond the noise" if not l["within_noise"] else "overlaps too large" if not l["overlap_rule_kept"] else "free"
+        rows.append(f"| {l['name']} | {l['grains']:.0f} | {l['steps']:.0f} | {l['grain_steps']:.2e} | {l['seconds']:.0f} | {l['speed_up']:.2f} | {l['gi_rmse']:.3f} | {l['noise_floor']:.3f} | {100 * l['packing_error']:+.1f} % | {100 * l['max_overlap_ratio']:.1f} % | {word} |")
+    rows.append("\nWhat the levels are: " + "; ".join(f"*{l['name']}*: {l['meaning']}" for l in a["levels"]) + ".")
+    if a["recommended"]:
+        rows.append(f"\nRecommended: **{a['recommended']}**, {a['why']}.")
+    return "\n".join(rows)
+
+
+def bench_table(name, words, by):
+    a = answer(name, words)
+    rows = [f"{shown(words)} on {a['host']['cores']} cores, {a['host']['isa']}:\n",
+            "| state | grains | threads | million grain-steps/s | a thread | bytes a grain | contacts a grain |", "|---|---|---|---|---|---|---|"]
+    for c in a["cases"]:
+        rows.append(f"| {c['name']} | {c['grains']} | {c['threads']} | {c['grain_steps_per_second'] / 1e6:.1f} | {c['grain_steps_per_second'] / 1e6 / c['threads']:.1f} | {c['bytes_per_grain']:.0f} | {c['contacts_per_grain']:.2f} |")
+    if by == "threads":
+        for state in dict.fromkeys(c["name"] for c in a["cases"]):
+            of = {c["threads"]: c["grain_steps_per_second"] for c in a["cases"] if c["name"] == state}
+            rows.append(f"\n{state.capitalize()}: {max(of)} threads against one: {of[max(of)] / of[1]:.2f} times." if len(of) > 1 else "")
+    else:
+        speeds = [c["grain_steps_per_second"] for c in a["cases"]]
+        rows.append(f"\nCost of a grain-step, dearest size over cheapest: {max(speeds) / min(speeds):.2f}.")
+    return "\n".join(rows)
+
+
+TABLES = {"tradeoff": tradeoff_table, "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
+
+
+def main():
+    wanted = sys.argv[1:] or list(TABLES)
+    for name in wanted:
+        if name not in TABLES:
+            sys.exit(f"no table '{name}'; there are {', '.join(TABLES)}")
+        table = TABLES[name]()
+        with open(PAGE) as file:
+            page = file.read()
+        mark = re.compile(rf"(<!-- {name}: begin -->\n).*?(<!-- {name}: end -->)", re.S)
+        if not mark.search(page):
+            sys.exit(f"{PAGE} has no place for the table '{name}'")
+        with open(PAGE, "w") as file:
+            file.write(mark.sub(lambda m: m.group(1) + table + "\n" + m.group(2), page))
+
+
+main()
