@@ -52,6 +52,7 @@ ExitCode run_tradeoff_command(const TradeoffCommand& command, const CommonOption
     options.seeds = command.seeds;
     options.fidelity = fidelity_of(command.fidelity);
     options.around_study = command.around == "study";
+    options.run.threads = thread_count(common);
     const Study study = load_study(command.study, common);
     const StudyReader read = [&](const std::vector<std::string>& more) {
         CommonOptions with = common;

@@ -119,6 +119,7 @@ void foresee(TradeoffLevel& level, const StudyReader& read, Fidelity fidelity) {
         const Study study = read(level.settings.overrides());
         const Scene scene = scene_of(study, start_design(study), fidelity == Fidelity::map, study.seed);
         level.expected_grain_steps = estimate_cost(scene).grain_steps;
+        level.scene = scene.canonical_text();
         for (const SceneProblem& problem : validate(scene))
             if (problem.fatal) return refused(problem.text);
     } catch (const InputError& error) {
@@ -231,6 +232,7 @@ Tradeoff plan_tradeoff(const StudyReader& read, const TradeoffOptions& options) 
     const Study study = read({});
     Tradeoff t;
     t.seeds = options.seeds;
+    t.threads = options.run.threads;
     t.fidelity = options.fidelity;
     t.weight = bin_weights(study);
     t.target = bin_targets(study);
@@ -269,6 +271,12 @@ Tradeoff plan_tradeoff(const StudyReader& read, const TradeoffOptions& options) 
             std::find(options.only.begin(), options.only.end(), level.name) != options.only.end();
         if (!wanted) continue;
         foresee(level, read, t.fidelity);
+        for (const TradeoffLevel& other : t.levels)
+            if (level.status == "waiting" && other.scene == level.scene && level.name != "study") {
+                level.status = "not possible";
+                level.reason =
+                    "the same scene as '" + other.name + "': this study fixes what it would change";
+            }
         t.levels.push_back(level);
     }
     return t;

@@ -57,6 +57,7 @@ struct TradeoffLevel {
     std::string step;  ///< the one setting in which it departs from where it started; empty: not one alone
     ReductionSettings settings;
     double expected_grain_steps = 0;  ///< of one spread, before sleep
+    std::string scene;                ///< canonical text: two levels may come to the same
     std::vector<TradeoffRun> runs;
     std::string status = "waiting";  ///< "ok", "waiting", "not possible", or the status of a failed run
     std::string reason;
@@ -81,6 +82,7 @@ struct Tradeoff {
     std::string why;            ///< in words
     std::string status = "ok";  ///< or "interrupted"
     int seeds = 0;
+    int threads = 0;  ///< of every spread
     Fidelity fidelity = Fidelity::map;
 };
 

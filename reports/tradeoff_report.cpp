@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
+#include "dem/bench.h"
 #include "reports/html_report.h"
 #include "reports/json_support.h"
 #include "reports/provenance.h"
@@ -86,6 +88,9 @@ const char* marks(const TradeoffLevel& level, const Tradeoff& t) {
 nlohmann::json tradeoff_json(const Study& study, const Tradeoff& t) {
     auto levels = nlohmann::json::array();
     for (const TradeoffLevel& level : t.levels) levels.push_back(level_json(level));
+    nlohmann::json provenance = provenance_json();
+    provenance["host"] = {
+        {"isa", compiled_isa()}, {"cores", std::thread::hardware_concurrency()}, {"threads", t.threads}};
     return {
         {"format", "gradwright-tradeoff-1"},
         {"study", study.name},
@@ -100,7 +105,7 @@ nlohmann::json tradeoff_json(const Study& study, const Tradeoff& t) {
         {"recommended", t.recommended},
         {"why", t.why},
         {"profile", {{"y_m", numbers(t.y_m)}, {"weight", numbers(t.weight)}, {"target", numbers(t.target)}}},
-        {"provenance", provenance_json()}};
+        {"provenance", provenance}};
 }
 
 std::string tradeoff_text(const Study& study, const Tradeoff& t) {

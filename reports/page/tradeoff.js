@@ -65,8 +65,8 @@
       y: { domain: [0, top], label: "↑ GI rms difference to the finest", grid: true }, color: { ...colours, legend: true }, symbol: shapes,
       marks: [
         Plot.ruleX(ran, { x: "speed_up", y1: 0, y2: (l) => data.noise_allowed * l.noise_floor, stroke: "#b7c0c9", strokeWidth: 7, strokeOpacity: 0.55 }),
-        Plot.dot(ran, { x: "speed_up", y: "gi_rmse", stroke: kind, fill: kind, symbol: kind, r: (l) => (l.name === data.recommended ? 8 : 5), tip: true, title: (l) => `${l.name}: ${l.meaning}\nspeed-up ${fixed(l.speed_up, 2)}, GI rms ${fixed(l.gi_rmse, 3)}, floor ${fixed(l.noise_floor, 3)}` }),
         ...["start", "end"].map((anchor) => Plot.text(labels.filter((o) => o.anchor === anchor), { x: (o) => o.l.speed_up, y: (o) => y.invert(o.ty), text: (o) => o.l.name, textAnchor: anchor, dx: anchor === "start" ? 9 : -9, fill: "#1b1f24", stroke: "#fff", strokeWidth: 3 })),
+        Plot.dot(ran, { x: "speed_up", y: "gi_rmse", fill: kind, symbol: kind, stroke: "#fff", strokeWidth: 1, r: (l) => (l.name === data.recommended ? 9 : 6), tip: true, title: (l) => `${l.name}: ${l.meaning}\nspeed-up ${fixed(l.speed_up, 2)}, GI rms ${fixed(l.gi_rmse, 3)}, floor ${fixed(l.noise_floor, 3)}` }),
         Plot.ruleY([0]),
       ],
     });
@@ -89,7 +89,7 @@
   function table(head, rows) {
     return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "table of the levels" }, h("table", {},
       h("thead", {}, h("tr", {}, head.map((c) => h("th", { scope: "col", class: c.right ? "r" : null }, c.name ?? c)))),
-      h("tbody", {}, rows.map((row) => h("tr", {}, row.map((cell, i) => h("td", { class: head[i].right ? "r" : null }, cell ?? "–")))))));
+      h("tbody", {}, rows.map((row) => h("tr", {}, row.map((cell, i) => h("td", { class: head[i].right ? "r" : null, style: i === 1 ? "min-width:15em" : null }, cell ?? "–")))))));
   }
 
   if (data.status !== "ok") page.append(h("div", { class: "warn", role: "note" }, h("strong", {}, "Interrupted"), " the table is of what was spread until then."));
@@ -99,7 +99,7 @@
     h("div", { class: "card w12" }, h("h3", {}, "Every level"), table(["level", "what it is", right("grains"), right("steps"), right("grain-steps"), right("seconds"), right("speed-up"), right("GI rms"), right("noise floor"), right("GI error"), right("packing error"), right("largest overlap / r"), ""],
       data.levels.map((l) => known(l.grains)
         ? [l.name, l.meaning, Math.round(l.grains).toLocaleString("en-GB"), Math.round(l.steps).toLocaleString("en-GB"), l.grain_steps.toExponential(2), fixed(l.seconds, 1), fixed(l.speed_up, 2), fixed(l.gi_rmse, 3), fixed(l.noise_floor, 3), fixed(l.gi_error, 3), known(l.packing_error) ? `${(100 * l.packing_error).toFixed(1)} %` : "–", known(l.max_overlap_ratio) ? `${(100 * l.max_overlap_ratio).toFixed(1)} %` : "–", l.status === "ok" ? kind(l) : l.status]
-        : [l.name, l.meaning, "–", "–", "–", "–", "–", "–", "–", "–", "–", "–", `${l.status} ${l.reason}`]))),
+        : [l.name, l.meaning, "–", "–", "–", "–", "–", "–", "–", "–", "–", "–", l.reason ? `${l.status}: ${l.reason}` : l.status]))),
     h("div", { class: "card w12" }, h("h3", {}, "How to read it"), h("p", { class: "note" }, "GI rms: difference between a level's mean GI(y) and the finest level's, over the bins that count. Noise floor: what two such means differ by when only the packings differ; the variance between beds, times the grains, is shared by all levels. GI error: the difference with the floor taken out in squares. Packing: of coarse grains it is no prediction. Seconds: one spread with an empty cache, packing included, on the machine named below."),
       (() => { const best = data.levels.find((l) => l.name === data.recommended); return best ? h("pre", { tabindex: "0" }, best.reductions.set.filter((s) => s !== "run.map_spreads=1").map((s) => `--set '${s}'`).join(" \\\n")) : null; })(),
       h("p", { class: "note" }, `${data.provenance.program} ${data.provenance.version} (${data.provenance.source}), ${data.provenance.host.isa || "unknown"}, ${data.provenance.host.cores} cores, ${data.provenance.host.threads} threads used.`))));

@@ -82,6 +82,9 @@ TEST_F(TradeoffVerb, levels_are_held_against_the_finest_and_written_as_json_and_
     EXPECT_EQ(coarse["reductions"]["coarse_factor"], 1.25);
     EXPECT_GT(r["noise_rms"], 0);
     EXPECT_FALSE(r["recommended"].get<std::string>().empty());
+    // the page's script reads it
+    EXPECT_EQ(r["provenance"]["host"]["threads"], 1);
+    EXPECT_TRUE(r["provenance"]["host"]["isa"].is_string());
     const std::string page = content(work() / "out/tradeoff.html");
     EXPECT_THAT(page, HasSubstr("Recommended: "));
     EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // nothing is fetched

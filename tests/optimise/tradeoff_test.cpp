@@ -136,6 +136,14 @@ TEST(Tradeoff, a_level_that_the_study_file_refuses_stays_in_the_table_with_the_r
     EXPECT_THAT(level(t, "half the strip").reason, HasSubstr("numerics.strip_width"));
 }
 
+TEST(Tradeoff, a_reduction_that_the_study_makes_void_is_not_spread) {
+    std::string deep = kStudy + "bed_depth = \"200 um\"\n";
+    const Tradeoff t = plan_tradeoff(reader(deep), {});
+    EXPECT_EQ(level(t, "shallow_bed").status, "not possible");
+    EXPECT_THAT(level(t, "shallow_bed").reason, HasSubstr("the same scene as 'finest'"));
+    EXPECT_EQ(level(t, "fines_cut").status, "waiting");
+}
+
 TEST(Tradeoff, a_known_error_is_found_and_a_free_reduction_is_told_from_it) {
     auto calls = std::make_shared<Calls>();
     const TradeoffOptions options = options_with(0.12, calls, 6);
