@@ -28,6 +28,10 @@ struct CheckOptions {
 int free_count(const DesignSpace& space) {
     if (!space.partition_free) return 0;
     if (space.family == Family::straight) return int(space.angle_deg.free) + int(space.offset.free);
+    if (space.family == Family::sigmoid)
+        return int(space.centre.free) + int(space.height.free) + int(space.place.free) +
+               int(space.width_10_90.free);
+    if (space.family == Family::two_curves) return 3 * space.knots - 2;  // one more gap per knot
     // Every knot moves across the dispenser; along it the knots of the curve are free as well, ends excepted.
     return 2 * space.knots - 2;
 }

@@ -70,15 +70,18 @@ void add_out_options(CLI::App& verb, CommonOptions& options);     ///< --out --f
 // One function per verb, each in the file of its name: registers the verb and its own options; the parsed
 // call runs it.
 void add_design(CLI::App& app, Call& call);
+void add_compare(CLI::App& app, Call& call);
 void add_evaluate(CLI::App& app, Call& call);
 void add_check(CLI::App& app, Call& call);
 void add_crosscheck(CLI::App& app, Call& call);
 void add_bench(CLI::App& app, Call& call);
 void add_tradeoff(CLI::App& app, Call& call);
+void add_reach(CLI::App& app, Call& call);
 void add_verify(CLI::App& app, Call& call);
 void add_bulk(CLI::App& app, Call& call);
 void add_limits(CLI::App& app, Call& call);
 void add_report(CLI::App& app, Call& call);
+void add_status(CLI::App& app, Call& call);
 void add_materials(CLI::App& app, Call& call);
 void add_machines(CLI::App& app, Call& call);
 

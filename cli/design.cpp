@@ -11,7 +11,9 @@
 #include "cli/common.h"
 #include "cli/progress.h"
 #include "cli/run_options.h"
-#include "optimise/design_run.h"
+#include "cli/run_record.h"
+#include "optimise/journal.h"
+#include "optimise/strategies.h"
 #include "reports/output_folder.h"
 #include "reports/result_json.h"
 #include "reports/summary.h"
@@ -21,17 +23,15 @@ namespace {
 
 struct DesignOptions {
     std::string study;
+    bool resume = false;
+    std::string resume_folder;  ///< word behind --resume, if any
     std::string strategy = "map";
     std::string fidelity;  ///< empty = map; only the plain strategies have a choice
-    int budget = 0;        ///< 0 = the study's, or kPlainBudget
+    int budget = 0;        ///< 0 = the study's, or StrategyChoice's
 };
 
-/// Evaluations of a plain strategy when --budget is not given: about five times the variables of a five-knot
-/// polyline.
-constexpr int kPlainBudget = 60;
-
 void refuse_contradictions(const DesignOptions& options) {
-    const std::vector<std::string> strategies = {"map", "bobyqa"};
+    const std::vector<std::string>& strategies = strategy_names();
     if (std::find(strategies.begin(), strategies.end(), options.strategy) == strategies.end())
         throw Failure(ExitCode::usage,
                       fmt::format("--strategy: there is no strategy '{}'{}", options.strategy,
@@ -41,11 +41,13 @@ void refuse_contradictions(const DesignOptions& options) {
         throw Failure(ExitCode::usage,
                       "--fidelity lammps is a witness, not a search: one spread takes minutes to hours",
                       "take it with 'evaluate' or 'crosscheck lammps'");
-    if (options.strategy == "map" && !options.fidelity.empty())
+    if (!searches_one_fidelity(options.strategy) && !options.fidelity.empty())
         throw Failure(
             ExitCode::usage,
-            "--fidelity has no meaning for --strategy map, which searches on the map and confirms in full",
-            "leave it out, or take --strategy bobyqa");
+            fmt::format("--fidelity has no meaning for --strategy {}, which searches on the map and "
+                        "spreads in full",
+                        options.strategy),
+            "leave it out, or take another strategy, such as --strategy bobyqa");
 }
 
 ExitCode exit_code_of(const StudyResult& result) {
@@ -55,25 +57,81 @@ ExitCode exit_code_of(const StudyResult& result) {
 }
 
 /// With --force: takes away what an earlier design left, so that two runs are never mixed in one folder. Only
-/// files whose names this program gives: evaluations (000012_full.json) and instants of the grains
-/// (particles_0001.vtkhdf).
+/// files whose names this program gives: evaluations (000012_full.json), spreads (spread-0123.bin), instants
+/// of the grains (particles_0001.vtkhdf) and what says that a run is finished.
 void remove_earlier(const std::string& folder) {
     namespace fs = std::filesystem;
-    const std::regex evaluation("[0-9]{6}_[a-z]+[.]json"), instant("particles_[0-9]{4}[.]vtkhdf");
+    const std::regex evaluation("[0-9]{6}_[a-z]+[.]json"),
+        instant("particles_[0-9]{4}[.]vtkhdf|(run|status|result)[.]json"), spread("spread-[0-9a-f]+[.]bin");
     std::error_code failed;
-    for (const auto& [place, pattern] :
-         {std::pair{fs::path(folder) / "journal", &evaluation}, {fs::path(folder), &instant}})
+    for (const auto& [place, pattern] : {std::pair{fs::path(folder) / "journal", &evaluation},
+                                         {fs::path(folder) / "spreads", &spread},
+                                         {fs::path(folder), &instant}})
         for (const auto& entry : fs::directory_iterator(place, failed))
             if (std::regex_match(entry.path().filename().string(), *pattern))
                 fs::remove(entry.path(), failed);
 }
 
-ExitCode run_design(const DesignOptions& options, CommonOptions common) {
+/// Which folder --resume means, and whether it holds a run. `design --resume OUT` alone takes everything from
+/// there; a study named too must be the same.
+bool find_resumed(DesignOptions& options, CommonOptions& common) {
+    namespace fs = std::filesystem;
+    if (!options.resume) return false;
+    if (!options.resume_folder.empty()) {
+        // 'design --resume study.toml --out OUT' is one reading of the same words
+        if (options.study.empty() && !common.out.empty())
+            options.study = options.resume_folder;
+        else if (common.out.empty())
+            common.out = options.resume_folder;
+        else
+            throw Failure(ExitCode::usage, "--resume names one folder and --out another", "leave one out");
+    }
+    if (common.out.empty())
+        throw Failure(ExitCode::usage, "--resume: which folder?", "design STUDY --out OUT --resume");
+    if (common.force)
+        throw Failure(ExitCode::usage, "--resume goes on with what --force throws away", "leave one out");
+    std::error_code failed;
+    const bool empty = !fs::exists(common.out, failed) || fs::is_empty(common.out, failed);
+    if (empty && !options.study.empty()) return false;  // nothing to go on with: begins
+    const RunRecord there = read_record(common.out);
+    if (!options.study.empty()) return true;
+    if (!common.set.empty() || common.seed)
+        throw Failure(ExitCode::usage, "--set and --seed change a study that is to be resumed as it is",
+                      "leave them out");
+    options.strategy = there.strategy;
+    options.fidelity = there.fidelity;
+    options.budget = there.budget;
+    return true;
+}
+
+/// The study of this call, or of the run that is gone on with.
+Study study_of(const DesignOptions& options, const CommonOptions& common, bool resumed) {
+    if (!resumed || !options.study.empty()) return load_study(options.study, common);
+    const RunRecord there = read_record(common.out);
+    return parse_study(there.study_text, there.study_file, there.set);
+}
+
+void refuse_other_run(const RunRecord& there, const RunRecord& now, const std::string& folder) {
+    const std::vector<std::string> other = differences(there, now);
+    if (!other.empty())
+        throw Failure(
+            ExitCode::bad_input,
+            fmt::format("'{}' holds another run; what differs:\n  {}", folder, fmt::join(other, "\n  ")),
+            "resume with the study as it was ('gradwright design --resume " + folder +
+                "'), or begin anew in another folder");
+}
+
+ExitCode run_design(DesignOptions options, CommonOptions common) {
+    const bool resumed = find_resumed(options, common);
+    if (options.study.empty() && !resumed)
+        throw Failure(ExitCode::usage, "STUDY is required", "gradwright design STUDY.toml --out OUT");
     refuse_contradictions(options);
-    // The map strategy's budget is an input of the study, so that it is listed with the others.
-    if (options.strategy == "map" && options.budget > 0)
+    StrategyChoice choice{options.strategy, fidelity_of(options.fidelity.empty() ? "map" : options.fidelity)};
+    if (options.budget > 0) choice.budget = options.budget;
+    // A budget of spreads is an input of the study, so that it is listed with the others.
+    if (!searches_one_fidelity(options.strategy) && options.budget > 0 && !(resumed && options.study.empty()))
         common.set.push_back(fmt::format("run.max_spreads={}", options.budget));
-    Study study = load_study(options.study, common);
+    Study study = study_of(options, common, resumed);
     const StudyEstimate cost = estimate(study, thread_count(common));
     refuse_impossible(study, cost);
     study.warnings = all_warnings(study, cost);  // they go into every result
@@ -81,17 +139,38 @@ ExitCode run_design(const DesignOptions& options, CommonOptions common) {
         for (const std::string& warning : study.warnings)
             fmt::print(stderr, "gradwright: warning: {}\n", warning);
 
-    const std::string folder = make_out_folder(common, study.name);
+    const std::string folder = resumed ? common.out : make_out_folder(common, study.name);
+    const FolderLock lock(folder);
     if (common.force) remove_earlier(folder);
+    std::vector<std::string> set = common.set;
+    if (common.seed) set.push_back(fmt::format("run.seed={}", *common.seed));
+    RunRecord record = record_of(study, set, options.strategy, options.fidelity, options.budget);
+    if (resumed)
+        refuse_other_run(read_record(folder), record, folder);
+    else
+        writing(folder, [&] { write_record(folder, record); });
     ProgressLine progress(common.quiet);
+    StatusFile status(folder);
     RunOptions run = run_options(common, progress);
+    run.progress = [&](const std::string& stage, double fraction) {
+        progress.update(stage, fraction);
+        status.update(stage, fraction);
+    };
     run.journal_folder = folder + "/journal";
-    if (!common.quiet) fmt::print(stderr, "gradwright: designing {}; results go to {}\n", study.name, folder);
-    const StudyResult result =
-        options.strategy == "map"
-            ? run_map_strategy(study, run)
-            : run_bobyqa_strategy(study, fidelity_of(options.fidelity.empty() ? "map" : options.fidelity),
-                                  options.budget > 0 ? options.budget : kPlainBudget, run);
+    run.spread_folder = folder + "/spreads";
+    run.resume = resumed;
+    if (!common.quiet)
+        fmt::print(stderr, "gradwright: {} {}; results go to {}\n", resumed ? "going on with" : "designing",
+                   study.name, folder);
+    const StudyResult result = [&] {
+        try {
+            return run_strategy(study, choice, run);
+        } catch (const OtherWay& other) {
+            throw Failure(ExitCode::bad_input,
+                          fmt::format("'{}' cannot be resumed: {}", folder, other.what()),
+                          "it was made by another build of the program: begin anew in another folder");
+        }
+    }();
     progress.finish();
 
     // What took minutes is shown even when it cannot be kept.
@@ -119,12 +198,14 @@ ExitCode run_design(const DesignOptions& options, CommonOptions common) {
         return unwritten->code;
     }
     const ExitCode code = exit_code_of(result);
+    status.end(code == ExitCode::interrupted         ? "interrupted"
+               : code == ExitCode::simulation_failed ? "failed"
+                                                     : "finished");
     if (code == ExitCode::interrupted)
-        fmt::print(
-            stderr,
-            "gradwright: interrupted; what is finished lies in {}. The same command{} starts again{}\n",
-            folder, common.out.empty() ? "" : " with --force",
-            run.cache_folder.empty() ? "" : "; settled beds come from the cache");
+        fmt::print(stderr,
+                   "gradwright: interrupted; what is finished lies in {}. Go on with: gradwright design "
+                   "--resume {}\n",
+                   folder, folder);
     if (code == ExitCode::simulation_failed)
         fmt::print(stderr, "gradwright: the simulation failed: {}\n", result.message);
     return code;
@@ -136,21 +217,30 @@ void add_design(CLI::App& app, Call& call) {
     auto options = std::make_shared<DesignOptions>();
     CLI::App* verb = app.add_subcommand(
         "design", "Find the partition that spreads the target, and prove it by labelled DEM spreads");
-    verb->add_option("STUDY", options->study, "Study file (TOML)")->required();
-    verb->add_option("--strategy", options->strategy, "map (default) | bobyqa")->type_name("NAME");
+    verb->add_option("STUDY", options->study, "Study file (TOML)");
+    CLI::Option* resume = verb->add_option("--resume", options->resume_folder,
+                                           "Go on with the run in --out, or in OUT: finished spreads are not "
+                                           "computed again, and the result is the same bit for bit")
+                              ->type_name("[OUT]")
+                              ->expected(0, 1);
+    verb->add_option("--strategy", options->strategy,
+                     fmt::format("{}; map is the default", fmt::join(strategy_names(), " | ")))
+        ->type_name("NAME");
     verb->add_option("--fidelity", options->fidelity,
-                     "What bobyqa evaluates: kinematic | map (default) | full")
+                     "What all but map and mf evaluate: kinematic | map (default) | full")
         ->type_name("NAME");
     verb->add_option("--budget", options->budget,
-                     "map: spreads in all, instead of the study's; bobyqa: evaluations")
+                     "map, mf: spreads in all, instead of the study's; the others: evaluations, default 60")
         ->type_name("N")
         ->check(CLI::Range(1, 1000000));
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);
     add_run_options(*verb, call.options);
     add_output_options(*verb, call.options);
-    verb->callback(
-        [options, &call] { call.run = [options, &call] { return run_design(*options, call.options); }; });
+    verb->callback([options, resume, &call] {
+        options->resume = resume->count() > 0;
+        call.run = [options, &call] { return run_design(*options, call.options); };
+    });
 }
 
 }  // namespace gradwright::cli

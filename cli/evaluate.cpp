@@ -1,5 +1,6 @@
 // gradwright evaluate: one design forward, at the fidelity asked for.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <fstream>
@@ -92,9 +93,9 @@ Design read_design(const std::string& file, const Study& study) {
         if (object.is_object() && object.contains("design")) object = object["design"];
         const nlohmann::json partition = object.value("partition", object);
         const std::string family = partition.value("family", std::string("polyline"));
-        if (family != "polyline" && family != "straight")
-            bad("partition.family", family, "is polyline or straight");
-        design.family = family == "straight" ? Family::straight : Family::polyline;
+        const std::optional<Family> known = family_of(family);
+        if (!known) bad("partition.family", family, fmt::format("is one of {}", fmt::join(kFamilies, ", ")));
+        design.family = known.value_or(Family::polyline);
         if (!partition.contains("points_m")) {
             bad("partition.points_m", "missing", "holds the [x, y] points of the curve in m");
         } else {
@@ -105,6 +106,17 @@ Design read_design(const std::string& file, const Study& study) {
                 bad("partition.points_m", partition["points_m"].dump(), "needs at least two points");
             else if (design.partition.self_intersects())
                 bad("partition.points_m", partition["points_m"].dump(), "must not cross itself");
+        }
+        design.partition.second.clear();
+        if (partition.contains("points2_m")) {
+            for (const auto& point : partition["points2_m"])
+                design.partition.second.push_back({point.at(0).get<double>(), point.at(1).get<double>()});
+            if (design.partition.second.size() < 2)
+                bad("partition.points2_m", partition["points2_m"].dump(), "needs at least two points");
+            else if (design.partition.points.size() >= 2 &&
+                     (design.partition.self_intersects() || design.partition.pair_disagrees()))
+                bad("partition.points2_m", partition["points2_m"].dump(),
+                    "must not meet itself or the first curve, and has A on its left as the first has");
         }
         design.parameters.clear();
         // named first: a range-for does not keep the temporary behind items() alive

@@ -98,11 +98,14 @@ int run(int argc, char** argv) {
     bool version = false;
     app.add_flag("--version", version, "Version, source, compiler, instruction set");
     add_design(app, call);
+    add_compare(app, call);
     add_evaluate(app, call);
     add_check(app, call);
     add_report(app, call);
+    add_status(app, call);
     add_crosscheck(app, call);
     add_tradeoff(app, call);
+    add_reach(app, call);
     add_bench(app, call);
     add_verify(app, call);
     add_bulk(app, call);

@@ -20,8 +20,11 @@ std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
     s.adhesive_walls = true;  // of the machine while it spreads; the dispenser's walls are not concerned
     s.dispenser_depth = 0;
     std::string text = fmt::format("format {}\n{}", kEngineFormat, s.canonical_text());
-    if (partition)
+    if (partition) {
         for (const auto& p : partition->points) text += fmt::format("{:.17g} {:.17g}\n", p.x, p.y);
+        if (!partition->second.empty()) text += "second curve\n";
+        for (const auto& p : partition->second) text += fmt::format("{:.17g} {:.17g}\n", p.x, p.y);
+    }
     return text;
 }
 

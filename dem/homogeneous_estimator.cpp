@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "dem/block_variance.h"
 
@@ -10,43 +11,66 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Shares of a bin that lie on A's side for one grain at a time. A curve that is a function of x is a single
-/// comparison in y and is averaged over the bin exactly; any other curve is sampled at `samples_per_bin`
-/// points with its exact signed distance.
-class LabelShares {
-  public:
-    LabelShares(const PartitionCurve& partition, const BinGrid& bins, const HomogeneousOptions& options)
-        : partition_(partition), bins_(bins), options_(options), curve_({}, {}) {
-        std::vector<PlanPoint> points = partition.points;
+/// A curve that is a function of x, and on which side of it A stands.
+struct SideOverX {
+    bool over_x = false, a_above = true;
+    CurveOverX<double> curve{{}, {}};
+
+    explicit SideOverX(std::vector<PlanPoint> points) {
         const auto rises = [](PlanPoint a, PlanPoint b) {
             return a.x >= b.x;
         };  // adjacent_find: first that does not rise
         if (points.back().x < points.front().x) {
             std::reverse(points.begin(), points.end());
-            a_above_ = false;
+            a_above = false;
         }
-        over_x_ = std::adjacent_find(points.begin(), points.end(), rises) == points.end();
-        if (!over_x_) return;
+        over_x = std::adjacent_find(points.begin(), points.end(), rises) == points.end();
+        if (!over_x) return;
         std::vector<double> x, y;
         for (PlanPoint p : points) {
             x.push_back(p.x);
             y.push_back(p.y);
         }
-        curve_ = CurveOverX<double>(x, y);
+        curve = CurveOverX<double>(x, y);
+    }
+
+    /// Share of every bin on A's side for a grain from origin_x that travelled `way` across.
+    void of_grain(double origin_x, double way, const BinGrid& bins, double smoothing,
+                  std::vector<double>& share) const {
+        double yc = 0, widening = 1;
+        curve.evaluate(origin_x, yc, widening);
+        std::fill(share.begin(), share.end(), 0.0);
+        const int filled = visit_bins<double>(bins, yc + way, smoothing * widening,
+                                              [&](int bin, double part) { share[bin] = part; });
+        std::fill(share.begin() + std::min(filled, bins.count), share.end(), 1.0);
+        if (!a_above) {
+            for (double& s : share) s = 1 - s;
+        }
+    }
+};
+
+/// Shares of a bin that lie on A's side for one grain at a time. A curve that is a function of x is a single
+/// comparison in y and is averaged over the bin exactly; any other curve is sampled at `samples_per_bin`
+/// points with its exact signed distance. Of a pair the shares add up as the areas do (partition.cpp).
+class LabelShares {
+  public:
+    LabelShares(const PartitionCurve& partition, const BinGrid& bins, const HomogeneousOptions& options)
+        : partition_(partition), bins_(bins), options_(options), first_(partition.points) {
+        over_x_ = first_.over_x;
+        if (partition.second.empty()) return;
+        second_.emplace(partition.second);
+        over_x_ = over_x_ && second_->over_x;
+        of_second_.resize(bins.count);
+        both_ = partition.a_between() ? 1 : 0;
     }
 
     /// share of every bin for a grain from origin_x that travelled `way` across.
-    void of_grain(double origin_x, double way, std::vector<double>& share) const {
+    void of_grain(double origin_x, double way, std::vector<double>& share) {
         if (over_x_) {
-            double yc = 0, widening = 1;
-            curve_.evaluate(origin_x, yc, widening);
-            std::fill(share.begin(), share.end(), 0.0);
-            const int filled = visit_bins<double>(bins_, yc + way, options_.smoothing * widening,
-                                                  [&](int bin, double part) { share[bin] = part; });
-            std::fill(share.begin() + std::min(filled, bins_.count), share.end(), 1.0);
-            if (!a_above_) {
-                for (double& s : share) s = 1 - s;
-            }
+            first_.of_grain(origin_x, way, bins_, options_.smoothing, share);
+            if (!second_) return;
+            second_->of_grain(origin_x, way, bins_, options_.smoothing, of_second_);
+            for (std::size_t bin = 0; bin < share.size(); ++bin) share[bin] += of_second_[bin] - both_;
             return;
         }
         const int samples = std::max(1, options_.samples_per_bin);
@@ -70,13 +94,16 @@ class LabelShares {
     const PartitionCurve& partition_;
     const BinGrid& bins_;
     const HomogeneousOptions& options_;
-    CurveOverX<double> curve_;
-    bool over_x_ = false, a_above_ = true;
+    SideOverX first_;
+    std::optional<SideOverX> second_;
+    std::vector<double> of_second_;
+    double both_ = 0;  ///< counted twice where A stands between the curves
+    bool over_x_ = false;
 };
 
 /// Moments of every bin; blocks are the layers when there are >= 3 (packing replicates), else blocks of x in
 /// each layer.
-std::vector<BinMoments> moments_of(const PooledGrains& grains, const LabelShares& shares, const BinGrid& bins,
+std::vector<BinMoments> moments_of(const PooledGrains& grains, LabelShares& shares, const BinGrid& bins,
                                    double block) {
     const bool by_layer = grains.replicates();
     const int cuts = by_layer ? 1 : block_count(grains.x_low, grains.x_high, block);
@@ -98,7 +125,7 @@ BlockTrend trend_of(const PooledGrains& grains) {
 }
 
 /// Means of every bin without moments: the fast path of a search.
-std::vector<double> means_of(const PooledGrains& grains, const LabelShares& shares, const BinGrid& bins) {
+std::vector<double> means_of(const PooledGrains& grains, LabelShares& shares, const BinGrid& bins) {
     std::vector<double> mean(bins.count, 0), share(bins.count);
     for (std::size_t i = 0; i < grains.size(); ++i) {
         shares.of_grain(grains.origin_x[i], grains.way[i], share);
@@ -166,7 +193,7 @@ Thirds thirds_of(const PooledGrains& grains) {
 
 GradationProfile homogeneous_profile(const PooledGrains& grains, const PartitionCurve& partition,
                                      const BinGrid& bins, const HomogeneousOptions& options) {
-    const LabelShares shares(partition, bins, options);
+    LabelShares shares(partition, bins, options);
     if (options.resamples > 0) {
         const std::vector<BinMoments> moments = moments_of(grains, shares, bins, options.block);
         return profile_of(moments, bin_variances(moments, trend_of(grains), BinGrains::common), bins);
@@ -185,7 +212,7 @@ GradationProfile homogeneous_profile(const PooledGrains& grains, const Partition
 
 XDrift homogeneous_drift(const PooledGrains& grains, const PartitionCurve& partition, const BinGrid& bins,
                          const HomogeneousOptions& options) {
-    const LabelShares shares(partition, bins, options);
+    LabelShares shares(partition, bins, options);
     const Thirds thirds = thirds_of(grains);
     if (options.resamples <= 0) {
         XDrift drift;

@@ -116,18 +116,16 @@ int visit_bins(const BinGrid& bins, const T& c, const T& half_width, Visit&& vis
     return bin;
 }
 
-/// GI of every bin into `gi` (resized to bins.count) [-]. `smoothing` = h [m], >= 0; knots: at least 2, x
-/// strictly rising. Without grains `gi` is left empty.
-template <class T>
-void smooth_homogeneous_profile(const PooledGrains& grains, std::span<const T> knot_x,
-                                std::span<const T> knot_y, const BinGrid& bins, double smoothing,
-                                std::vector<T>& gi) {
+/// GI of every bin into `gi` (resized to bins.count) [-]: A where y is larger than on the curve, which tells
+/// yc and H/h as CurveOverX does. `smoothing` = h [m], >= 0. Without grains `gi` is left empty.
+template <class T, class Curve>
+void smooth_profile_above(const PooledGrains& grains, const Curve& curve, const BinGrid& bins,
+                          double smoothing, std::vector<T>& gi) {
     gi.clear();
     if (grains.size() == 0) return;
     gi.assign(bins.count, T(0.0));
     // certain grains are plain numbers: counted at the first bin they fill, summed over bins once at the end
     std::vector<double> filled_from(bins.count + 1, 0.0);
-    const CurveOverX<T> curve(knot_x, knot_y);
     T yc, widening;
     for (std::size_t i = 0; i < grains.size(); ++i) {
         curve.evaluate(grains.origin_x[i], yc, widening);
@@ -142,6 +140,14 @@ void smooth_homogeneous_profile(const PooledGrains& grains, std::span<const T> k
         certain += filled_from[bin];
         gi[bin] = (gi[bin] + certain) / total;
     }
+}
+
+/// The same of a polyline; knots: at least 2, x strictly rising.
+template <class T>
+void smooth_homogeneous_profile(const PooledGrains& grains, std::span<const T> knot_x,
+                                std::span<const T> knot_y, const BinGrid& bins, double smoothing,
+                                std::vector<T>& gi) {
+    smooth_profile_above<T>(grains, CurveOverX<T>(knot_x, knot_y), bins, smoothing, gi);
 }
 
 /// x drift of the same estimator: GI over the last third minus over the first third of [x_low, x_high), per

@@ -319,12 +319,12 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     }
     add_end_walls(engine, scene);
     add_side_walls(engine, scene);
-    int plate = -1;
-    if (scene.plate_thickness > 0 && partition) {
+    std::vector<int> plates;
+    const auto add_plate = [&](const std::vector<PlanPoint>& curve) {
         Body body;
         body.kind = Body::Kind::plate;
         // the ends run on straight to the walls, as the partition's rule says
-        body.curve = partition->points;
+        body.curve = curve;
         auto extend = [&](PlanPoint& tip, const PlanPoint& inner) {
             const double l = std::hypot(tip.x - inner.x, tip.y - inner.y),
                          far = 2 * (scene.dispenser_length + scene.width);
@@ -336,7 +336,11 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
         body.half_thickness = 0.5 * scene.plate_thickness;
         body.z0 = z_floor + scene.roughness;
         body.material = kWallMaterial;
-        plate = engine.add_body(body);
+        plates.push_back(engine.add_body(body));
+    };
+    if (scene.plate_thickness > 0 && partition) {
+        add_plate(partition->points);
+        if (!partition->second.empty()) add_plate(partition->second);
     }
 
     Settling settling{engine, scene, options};
@@ -362,11 +366,11 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
         }
         return changed;
     };
-    if (settled && plate >= 0) {
-        engine.remove_body(plate);  // withdrawn at once; the slot collapses
+    if (settled && !plates.empty()) {
+        for (const int plate : plates) engine.remove_body(plate);  // withdrawn at once; the slot collapses
         settled = settling.settle(most, "withdraw");
     }
-    if (settled && plate < 0 && relabel()) settled = settling.settle(most, "settle");
+    if (settled && plates.empty() && relabel()) settled = settling.settle(most, "settle");
 
     if (!engine.failed().empty()) {
         health.status = "diverged";

@@ -133,14 +133,11 @@ bool segments_meet(PlanPoint a, PlanPoint b, PlanPoint c, PlanPoint d) {
            (a_side == 0 && within(c, d, a)) || (b_side == 0 && within(c, d, b));
 }
 
-}  // namespace
-
 // Nearest feature (segment, continuation or vertex) gives the distance; its normal gives the sign. At a
 // vertex the sum of the two unit normals is taken (the plane case of the angle-weighted pseudo-normal,
 // Baerentzen and Aanaes 2005): either segment's own normal alone gives the wrong sign in the wedge beyond a
 // sharp corner.
-double PartitionCurve::signed_distance(double x, double y) const {
-    const PlanPoint q = {x, y};
+double signed_distance_to(const std::vector<PlanPoint>& points, PlanPoint q) {
     const std::size_t segments = points.size() - 1;
     double best = std::numeric_limits<double>::infinity(), sign = 1;
     for (std::size_t k = 0; k < segments; ++k) {
@@ -170,16 +167,39 @@ double PartitionCurve::signed_distance(double x, double y) const {
     return sign * best;
 }
 
+}  // namespace
+
+// A's region lies to the left of both curves (A between) or of either (B between): the smaller or the larger
+// of the two distances. The nearest curve alone would do as well but beyond the ends, where the continuations
+// may cross.
+double PartitionCurve::signed_distance(double x, double y) const {
+    const double first = signed_distance_to(points, {x, y});
+    if (second.empty()) return first;
+    const double other = signed_distance_to(second, {x, y});
+    return a_between() ? std::min(first, other) : std::max(first, other);
+}
+
+bool PartitionCurve::a_between() const {
+    return !second.empty() && signed_distance_to(points, second.front()) > 0;
+}
+
 std::vector<PlanPoint> PartitionCurve::clipped(double length, double width) const {
     return clamp_to_rectangle(points, length, width).points;
 }
 
-// Shoelace over the clamped curve closed counter-clockwise along the walls from its exit to its entry: A's
-// region lies to its left.
-double PartitionCurve::area_a(double length, double width) const {
+std::vector<PlanPoint> PartitionCurve::second_clipped(double length, double width) const {
+    return second.empty() ? std::vector<PlanPoint>{} : clamp_to_rectangle(second, length, width).points;
+}
+
+namespace {
+
+// Shoelace over the clamped curve closed counter-clockwise along the walls from its exit to its entry: the
+// region to its left.
+double area_left_of(const std::vector<PlanPoint>& points, double length, double width) {
     Clamped path = clamp_to_rectangle(points, length, width);
     const double whole = length * width;
-    if (!path.inside || path.points.size() < 2) return on_side_a(0.5 * length, 0.5 * width) ? whole : 0;
+    if (!path.inside || path.points.size() < 2)
+        return signed_distance_to(points, {0.5 * length, 0.5 * width}) > 0 ? whole : 0;
     const double perimeter = 2 * (length + width);
     const double exit = way_along_edge(path.points.back(), length, width);
     double to_go = way_along_edge(path.points.front(), length, width) - exit;
@@ -202,7 +222,7 @@ double PartitionCurve::area_a(double length, double width) const {
     return std::clamp(area, 0.0, whole);
 }
 
-bool PartitionCurve::self_intersects() const {
+bool meets_itself(const std::vector<PlanPoint>& points) {
     double reach = 0;
     for (PlanPoint p : points) {
         for (PlanPoint q : points) reach = std::max(reach, length_of(p - q));
@@ -220,6 +240,31 @@ bool PartitionCurve::self_intersects() const {
         }
     }
     return false;
+}
+
+}  // namespace
+
+// The regions left of the two curves cover the rectangle together where A stands between them, and do not
+// meet where B does.
+double PartitionCurve::area_a(double length, double width) const {
+    const double first = area_left_of(points, length, width);
+    if (second.empty()) return first;
+    const double sum = first + area_left_of(second, length, width);
+    return std::clamp(a_between() ? sum - length * width : sum, 0.0, length * width);
+}
+
+bool PartitionCurve::self_intersects() const {
+    return meets_itself(points) || (!second.empty() && meets_itself(second));
+}
+
+bool PartitionCurve::pair_disagrees() const {
+    if (second.empty()) return false;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        for (std::size_t j = 0; j + 1 < second.size(); ++j) {
+            if (segments_meet(points[i], points[i + 1], second[j], second[j + 1])) return true;
+        }
+    }
+    return a_between() != (signed_distance_to(second, points.front()) > 0);
 }
 
 PartitionCurve straight_partition(double dispenser_length, double dispenser_width, double angle,

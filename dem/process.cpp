@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "dem/cache_file.h"
+#include "dem/spread_file.h"
 #include "dem/stability.h"
 #include "dem/stage.h"
 
@@ -49,70 +50,6 @@ double heap_length(const Engine& engine, const Scene& scene, double blade_x, dou
     return std::sqrt(2 * section / std::tan(std::numbers::pi / 6));
 }
 
-/// What is kept of a finished spread: layer, facts and counts; no snapshots.
-std::string spread_bytes(const SpreadResult& r) {
-    std::string out;
-    const Layer& l = r.layer;
-    for (const auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z,
-                          &l.volume, &l.radius})
-        put(out, *v);
-    put(out, l.is_a);
-    const auto& f = r.bed;
-    put(out,
-        std::vector<double>{l.dosed_solid_volume,   l.overflow_solid_volume,  l.overflow_solid_volume_a,
-                            l.bed_packing,          f.packing_fraction,       f.mean_coordination,
-                            f.max_overlap_ratio,    f.speed_number,           f.carried_weight_ratio,
-                            double(f.steps),        f.seconds_cold,           double(r.grains),
-                            double(r.fixed_grains), double(r.pinched_grains), double(r.steps),
-                            r.grain_steps,          r.all_grain_steps,        r.time_step,
-                            r.bond_number,          r.seconds_cold,           r.health.max_overlap_ratio});
-    put(out, f.made_d10_d50_d90);
-    put(out, std::vector<char>(r.state_hash.begin(), r.state_hash.end()));
-    std::string warnings;
-    for (const auto& w : r.health.warnings) warnings += w + '\n';
-    put(out, std::vector<char>(warnings.begin(), warnings.end()));
-    return out;
-}
-
-bool read_spread(const std::string& bytes, const Scene& scene, SpreadResult& r) {
-    std::size_t at = 0;
-    Layer& l = r.layer;
-    for (auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z,
-                    &l.volume, &l.radius})
-        if (!take(bytes, at, *v)) return false;
-    std::vector<double> n;
-    std::vector<char> hash, warnings;
-    auto& f = r.bed;
-    if (!take(bytes, at, l.is_a) || !take(bytes, at, n) || n.size() != 21 ||
-        !take(bytes, at, f.made_d10_d50_d90) || !take(bytes, at, hash) || !take(bytes, at, warnings))
-        return false;
-    l.dosed_solid_volume = n[0], l.overflow_solid_volume = n[1], l.overflow_solid_volume_a = n[2],
-    l.bed_packing = n[3];
-    f.packing_fraction = n[4], f.mean_coordination = n[5], f.max_overlap_ratio = n[6], f.speed_number = n[7];
-    f.carried_weight_ratio = n[8], f.steps = long(n[9]), f.seconds_cold = n[10], f.from_cache = true;
-    r.grains = long(n[11]), r.fixed_grains = long(n[12]), r.pinched_grains = long(n[13]),
-    r.steps = long(n[14]);
-    r.grain_steps = n[15], r.all_grain_steps = n[16], r.time_step = n[17], r.bond_number = n[18],
-    r.seconds_cold = n[19];
-    r.health.max_overlap_ratio = n[20];
-    r.health.status = "ok";
-    r.state_hash.assign(hash.begin(), hash.end());
-    std::string line;
-    for (const char c : warnings) {
-        if (c != '\n')
-            line += c;
-        else
-            r.health.warnings.push_back(std::move(line)), line.clear();
-    }
-    l.periodic = scene.sides == Sides::periodic;
-    l.width = scene.width;
-    l.dispenser_length = scene.dispenser_length;
-    l.platform_length = scene.platform_length;
-    l.gap = scene.gap;
-    l.packing_seed = scene.seed;
-    return true;
-}
-
 SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, const SpreadOptions& options);
 
 }  // namespace
@@ -126,13 +63,18 @@ SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, con
     const double start = omp_get_wtime();
     const std::string key = fmt::format("spread format {}\n{}", kEngineFormat, scene.canonical_text());
     SpreadResult out;
-    if (const auto bytes = read_cache(options.cache_folder, "map", key);
-        bytes && read_spread(*bytes, scene, out)) {
+    if (const auto bytes = read_cache(options.cache_folder, "map", key); bytes && read_spread(*bytes, out)) {
+        out.bed.from_cache = true;
+        out.bed.seconds = 0;
         out.seconds = omp_get_wtime() - start;
         return out;
     }
     out = spread_now(scene, partition, options);
-    if (out.health.ok()) write_cache(options.cache_folder, "map", key, spread_bytes(out));
+    if (out.health.ok()) {
+        SpreadResult kept = out;
+        kept.snapshots.clear();
+        write_cache(options.cache_folder, "map", key, spread_bytes(kept));
+    }
     return out;
 }
 

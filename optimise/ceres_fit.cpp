@@ -35,7 +35,7 @@ ceres::CostFunction* autodiff(const FitProblem& problem, const PartitionFamily& 
     auto* cost = new ceres::DynamicAutoDiffCostFunction<ResidualFunctor, Stride>(
         new ResidualFunctor{&problem, &family, smoothing});
     cost->AddParameterBlock(int(family.size()));
-    cost->SetNumResiduals(problem.residual_count());
+    cost->SetNumResiduals(problem.residual_count() + family.bend_count());
     return cost;
 }
 
@@ -129,13 +129,16 @@ std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const
             starts.push_back({family.orientation(), moved, {}});
         }
     };
-    // A user's fixed angle keeps its meaning, A on the left; else the side follows the target.
-    const bool angle_fixed = space.family == Family::straight && !space.angle_deg.free;
-    const bool above = angle_fixed || target_rises(study);
+    const bool above = stands_above(study, space);
     for (const bool rising :
          {!above, above}) {  // A on the platform side first, then on the dispenser's back side
         const PartitionFamily family(space, length, width, {above, rising});
-        add(family, family.fit_samples(closed_form_curve(study, family.orientation(), quantile)));
+        const std::vector<double> closed = closed_form_start(study, family, quantile);
+        add(family, closed);
+        if (space.family == Family::two_curves)
+            add(family, closed_form_start(study, family, quantile, Fold::valley));
+        const std::vector<double> users = family.users_start(space, closed);
+        if (users != closed) add(family, users);
     }
     // Folded curves, where the family allows them: they trade grains from both ends of the dispenser against
     // each other, which is what cancels the drift of the heap's turnover.
@@ -185,10 +188,8 @@ int FitProblem::residual_count() const {
 
 std::pair<double, double> FitProblem::hard_misfit_and_drift(const PartitionFamily& family,
                                                             std::span<const double> p) const {
-    std::vector<double> x, y, gi, difference;
-    family.knots_of(p.data(), x, y);
-    smooth_homogeneous_profile<double>(grains, x, y, bins, 0, gi);
-    smooth_homogeneous_drift<double>(thirds.first, thirds.last, x, y, bins, 0, difference);
+    std::vector<double> gi, difference;
+    shares<double>(family, p.data(), 0, gi, difference);
     const bool above = family.orientation().a_above;
     std::vector<double> counts(weight.size(), 0.0);
     for (std::size_t b = 0; b < weight.size(); ++b) {
@@ -202,7 +203,7 @@ std::pair<double, double> FitProblem::hard_misfit_and_drift(const PartitionFamil
 
 double FitProblem::hard_objective(const PartitionFamily& family, std::span<const double> p) const {
     const auto [misfit, drift] = hard_misfit_and_drift(family, p);
-    return std::sqrt(misfit * misfit + x_drift_weight * drift * drift);
+    return std::sqrt(misfit * misfit + x_drift_weight * drift * drift + family.unsound(p));
 }
 
 FitResult fit_partition(const Study& study, const DesignSpace& space, const Design& design,
@@ -255,12 +256,18 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
         finalist.family = space.family;
         finalist.partition = family.curve(candidate.best);
         finalist.parameters = family.named(candidate.best);
-        result.finalists.push_back(std::move(finalist));
+        if (family.unsound(candidate.best) == 0) result.finalists.push_back(std::move(finalist));
         if (candidate.objective < result.objective) {
             result.objective = candidate.objective;
             result.p = candidate.best;
             result.orientation = candidate.orientation;
         }
+    }
+    if (!result.p.empty() && result.finalists.empty()) {
+        result.message =
+            fmt::format("no partition found that can be bent with minimum_bend_radius = {:.3g} mm",
+                        space.minimum_bend_radius * 1e3);
+        return result;
     }
     if (result.p.empty()) {
         result.message = "stopped before the first start was finished";

@@ -6,7 +6,7 @@
 //   sqrt(w_b / sum w) (GI_b - target_b)                then   sqrt(x_drift_weight / n) (drift_b -
 //   drift_target_b)
 // so that |r|^2 = rmse^2 + x_drift_weight drift_rms^2: the square of the objective of `judge` without its
-// price of waste, which no partition changes.
+// price of waste, which no partition changes. A family with a least bend radius appends its bend_excess.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -36,8 +36,13 @@ struct FitProblem {
     /// [m].
     template <class T>
     void residuals(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& out) const;
+    /// Of those two kinds; a family's bend_count comes on top.
     int residual_count() const;
-    /// sqrt(m^2 + x_drift_weight d^2) with hard labels and the norm asked for [-].
+    /// Profile and drift of the share above the partition, or between its curves (visit_curves).
+    template <class T>
+    void shares(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
+                std::vector<T>& difference) const;
+    /// sqrt(m^2 + x_drift_weight d^2 + unsound) with hard labels and the norm asked for [-].
     double hard_objective(const PartitionFamily& family, std::span<const double> p) const;
     /// (m, d) of the above.
     std::pair<double, double> hard_misfit_and_drift(const PartitionFamily& family,
@@ -81,12 +86,33 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
                         const FitProblem& problem, const FitOptions& options);
 
 template <class T>
+void FitProblem::shares(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
+                        std::vector<T>& difference) const {
+    gi.clear();
+    difference.clear();
+    std::vector<T> profile, first, last;
+    const auto add = [](std::vector<T>& sum, const std::vector<T>& part, double sign) {
+        if (sum.empty())
+            sum = part;
+        else
+            for (std::size_t b = 0; b < part.size(); ++b) sum[b] += sign * part[b];
+    };
+    family.visit_curves(p, [&](const auto& curve, double sign) {
+        smooth_profile_above<T>(grains, curve, bins, smoothing, profile);
+        add(gi, profile, sign);
+        smooth_profile_above<T>(thirds.first, curve, bins, smoothing, first);
+        smooth_profile_above<T>(thirds.last, curve, bins, smoothing, last);
+        if (first.empty() || last.empty()) return;
+        for (std::size_t b = 0; b < last.size(); ++b) last[b] -= first[b];
+        add(difference, last, sign);
+    });
+}
+
+template <class T>
 void FitProblem::residuals(const PartitionFamily& family, const T* p, double smoothing,
                            std::vector<T>& out) const {
-    std::vector<T> x, y, gi, difference;
-    family.knots_of(p, x, y);
-    smooth_homogeneous_profile<T>(grains, x, y, bins, smoothing, gi);
-    smooth_homogeneous_drift<T>(thirds.first, thirds.last, x, y, bins, smoothing, difference);
+    std::vector<T> gi, difference;
+    shares(family, p, smoothing, gi, difference);
     double sum = 0;
     int counting = 0;
     for (const double w : weight) {
@@ -107,6 +133,7 @@ void FitProblem::residuals(const PartitionFamily& family, const T* p, double smo
             out.push_back(std::sqrt(x_drift_weight / counting) *
                           ((above ? difference[b] : T(-difference[b])) - drift_target[b]));
     }
+    family.bend_excess(p, out);
 }
 
 }  // namespace gradwright

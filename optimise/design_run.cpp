@@ -53,17 +53,24 @@ Design start_design(const Study& study) {
         return design;
     }
     if (space.given_points.size() >= 2) {
-        design.partition.points = space.given_points;
+        const bool smooth = space.family == Family::spline;
+        design.partition.points = smooth ? spline_through(space.given_points) : space.given_points;
+        design.partition.second = space.given_second;
         for (std::size_t k = 0; k < space.given_points.size(); ++k) {
             design.parameters.emplace_back(fmt::format("x{}_m", k), space.given_points[k].x);
             design.parameters.emplace_back(fmt::format("y{}_m", k), space.given_points[k].y);
         }
+        for (std::size_t k = 0; k < space.given_second.size(); ++k) {
+            design.parameters.emplace_back(fmt::format("second_x{}_m", k), space.given_second[k].x);
+            design.parameters.emplace_back(fmt::format("second_y{}_m", k), space.given_second[k].y);
+        }
+        if (smooth) design.parameters.emplace_back("least_bend_radius_m", spline_radius(space.given_points));
         return design;
     }
-    const bool rises = target_rises(study);
-    const PartitionFamily family(space, length, width, {rises, !rises});
-    const std::vector<double> p = family.fit_samples(
-        closed_form_curve(study, family.orientation(), [&](double share) { return share * length; }));
+    const bool above = stands_above(study, space);
+    const PartitionFamily family(space, length, width, {above, !above});
+    const std::vector<double> p =
+        closed_form_start(study, family, [&](double share) { return share * length; });
     design.partition = family.curve(p);
     design.parameters = family.named(p);
     return design;

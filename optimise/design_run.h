@@ -16,6 +16,8 @@ struct RunOptions {
     int threads = 0;
     std::string cache_folder;    ///< empty = no cache
     std::string journal_folder;  ///< one fsynced file per finished evaluation; empty = none
+    std::string spread_folder;   ///< every finished spread, kept whole for a resumed run; empty = none
+    bool resume = false;         ///< what stands in the two folders is this very run's beginning
     int snapshots = 2;
     std::function<void(const std::string& stage, double fraction)> progress;
     const std::atomic<bool>* stop = nullptr;
@@ -39,7 +41,7 @@ Design start_design(const Study& study);
 Evaluation evaluate_once(const Study& study, const Design& design, Fidelity fidelity, std::uint64_t seed,
                          const RunOptions& options, SpreadResult* spread = nullptr);
 
+/// The default; strategies.h has the others.
 StudyResult run_map_strategy(const Study& study, const RunOptions& options);
-StudyResult run_bobyqa_strategy(const Study& study, Fidelity fidelity, int budget, const RunOptions& options);
 
 }  // namespace gradwright

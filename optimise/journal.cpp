@@ -179,10 +179,15 @@ json to_json(const Evaluation& evaluation, const std::vector<Layer>& layers) {
     out["format"] = kFormat;
     out["fidelity"] = to_string(evaluation.fidelity);
     out["norm"] = to_string(evaluation.misfit.norm);
-    out["family"] = evaluation.design.family == Family::straight ? "straight" : "polyline";
-    json points = json::array();
-    for (const PlanPoint& point : evaluation.design.partition.points) points.push_back({point.x, point.y});
-    out["partition_points_m"] = points;
+    out["family"] = to_string(evaluation.design.family);
+    const auto listed = [](const std::vector<PlanPoint>& curve) {
+        json points = json::array();
+        for (const PlanPoint& point : curve) points.push_back({point.x, point.y});
+        return points;
+    };
+    out["partition_points_m"] = listed(evaluation.design.partition.points);
+    if (!evaluation.design.partition.second.empty())
+        out["partition_points2_m"] = listed(evaluation.design.partition.second);
     evaluation_fields(Writer{out}, evaluation);
     out["layers"] = json::array();
     for (const Layer& layer : layers) {
@@ -200,9 +205,16 @@ void from_json(const json& in, JournalEntry& entry) {
     evaluation_fields(Reader{in}, evaluation);
     evaluation.fidelity = named(kFidelities, in.at("fidelity"));
     evaluation.misfit.norm = named(kNorms, in.at("norm"));
-    evaluation.design.family = in.at("family") == "straight" ? Family::straight : Family::polyline;
-    for (const json& point : in.at("partition_points_m"))
-        evaluation.design.partition.points.push_back({point.at(0).get<double>(), point.at(1).get<double>()});
+    const std::optional<Family> family = family_of(in.at("family").get<std::string>());
+    if (!family) throw std::runtime_error("unknown family " + in.at("family").dump());
+    evaluation.design.family = *family;
+    const auto read = [](const json& points, std::vector<PlanPoint>& curve) {
+        for (const json& point : points)
+            curve.push_back({point.at(0).get<double>(), point.at(1).get<double>()});
+    };
+    read(in.at("partition_points_m"), evaluation.design.partition.points);
+    if (in.contains("partition_points2_m"))
+        read(in.at("partition_points2_m"), evaluation.design.partition.second);
     for (const json& inner : in.at("layers")) layer_fields(Reader{inner}, entry.layers.emplace_back());
 }
 
@@ -253,21 +265,55 @@ void write_flushed(const std::string& path, const std::string& text) {
     fail("write", path);
 }
 
+/// Key in which the evaluation differs from the one in the file; empty when they are the same. Times and
+/// warnings hang on the machine's day, and the layers on the spread whose hash is compared.
+std::string first_difference(const std::string& file, const Evaluation& evaluation) {
+    json known;
+    try {
+        std::ifstream in(file);
+        known = json::parse(in);
+    } catch (const json::exception& problem) {
+        throw std::runtime_error(fmt::format("journal: {} is damaged: {}", file, problem.what()));
+    }
+    const json now = json::parse(to_json(evaluation, {}).dump());  // through text, as the other went
+    for (const auto& [key, value] : now.items()) {
+        if (key == "seconds" || key == "seconds_cold" || key == "layers") continue;
+        if (key == "health") {
+            if (!known.contains(key) || known[key]["status"] != value["status"]) return "health.status";
+            continue;
+        }
+        if (!known.contains(key) || known[key] != value) return key;
+    }
+    return {};
+}
+
 }  // namespace
 
-Journal::Journal(std::string folder) : folder_(std::move(folder)) {
+Journal::Journal(std::string folder, bool replay) : folder_(std::move(folder)) {
     if (folder_.empty()) return;
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error)
         throw std::runtime_error(fmt::format("journal: cannot make folder {}: {}", folder_, error.message()));
     if (::access(folder_.c_str(), W_OK | X_OK) != 0) fail("write into folder", folder_);
-    for (const auto& file : fs::directory_iterator(folder_))
+    for (const auto& file : fs::directory_iterator(folder_)) {
         last_ = std::max(last_, entry_number(file.path()));
+        if (replay && entry_number(file.path()) > 0) replayed_.push_back(file.path().string());
+    }
+    std::sort(replayed_.begin(), replayed_.end(),
+              [](const std::string& a, const std::string& b) { return entry_number(a) > entry_number(b); });
 }
 
 int Journal::append(const Evaluation& evaluation, const std::vector<Layer>& layers) {
     if (folder_.empty()) return 0;
+    if (!replayed_.empty()) {
+        const std::string known = replayed_.back();
+        replayed_.pop_back();
+        const std::string key = first_difference(known, evaluation);
+        if (!key.empty())
+            throw OtherWay(fmt::format("the run goes another way than in {}: '{}' differs", known, key));
+        return entry_number(known);
+    }
     const std::string path =
         fmt::format("{}/{:06}_{}.json", folder_, last_ + 1, to_string(evaluation.fidelity));
     const std::string aside = path + kAside;

@@ -3,8 +3,11 @@
 // folder flushed too.
 //   000012_full.json   number + fidelity; numbers count up and are never used twice
 // Undefined numbers are null in the file and NaN in memory.
+// A resumed run goes the same way again, with the spreads it had finished: what it has to say is held against
+// the entries that stand there and written only from the first new one on.
 #pragma once
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,14 +23,21 @@ struct JournalEntry {
         layers;  ///< with origins: the strips of a new set of motion variables, a full spread's own
 };
 
+/// A resumed run that does not do again what its journal says it did.
+struct OtherWay : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 class Journal {
   public:
     /// Opens `folder`, made when missing; "" = no journal, append() does nothing. Goes on after the highest
     /// number found. Throws std::runtime_error naming the folder and the reason when it cannot be written.
-    explicit Journal(std::string folder);
+    /// `replay`: what is appended first is held against the entries found, in their order.
+    explicit Journal(std::string folder, bool replay = false);
 
     /// Number of the entry, 0 without a journal. Throws std::runtime_error naming the file and the reason
-    /// (disk full, no permission); entries written before stay whole.
+    /// (disk full, no permission); entries written before stay whole. While replaying: OtherWay naming the
+    /// entry and the key where the run goes another way than before (times and warnings aside).
     int append(const Evaluation& evaluation, const std::vector<Layer>& layers = {});
     const std::string& folder() const { return folder_; }
     /// When set, append() hands its failure to it and returns 0 instead of throwing: an evaluation that cost
@@ -41,6 +51,7 @@ class Journal {
   private:
     std::string folder_;
     int last_ = 0;
+    std::vector<std::string> replayed_;  ///< files still to be met, the next one last
 };
 
 }  // namespace gradwright

@@ -82,17 +82,37 @@ OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
     const auto found = maps_.find(key);
     if (found != maps_.end()) return found->second;
     OriginMap& map = maps_[key];
+    fill(map, design, seed, study_.map_spreads, 0);
+    // The spread is what costs: kept before anything is made of it.
+    if (journal_ && map.health.status != "interrupted") {
+        journal_->append(with(design, map, false), map.layers);
+        map.told = false;
+    }
+    return map;
+}
+
+Evaluation MapEvaluator::with_powder_b(const Design& design) {
+    OriginMap& map = maps_b_[key_of(design, 0)];
+    if (map.health.status == "not_run") fill(map, design, map_seed(study_.seed, study_.map_spreads), 1, 1);
+    const Evaluation evaluation = with(design, map, true);
+    if (journal_ && evaluation.health.status != "interrupted") journal_->append(evaluation, map.layers);
+    return evaluation;
+}
+
+void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed, int count, int powder) {
     map.health.status = "ok";
     Design level = design;
     // Without labels there are no chambers: a level step would follow the partition, so the map takes the
     // mean level.
     const double mean_fill = 0.5 * (design.fill_fraction[0] + design.fill_fraction[1]);
     level.fill_fraction = {mean_fill, mean_fill};
-    for (int i = 0; i < study_.map_spreads; ++i) {
+    for (int i = 0; i < count; ++i) {
         const std::uint64_t packing_seed = seed == 0 ? map_seed(study_.seed, i) : seed + 2 * i;
-        const Scene scene = scene_of(study_, level, true, packing_seed);
-        const SpreadResult result =
-            runner_.spread(scene, nullptr, fmt::format("map spread {}", runner_.map_spreads + 1));
+        Scene scene = scene_of(study_, level, true, packing_seed);
+        scene.powder[0] = scene.powder[powder];  // a spread without labels has powder A alone
+        const SpreadResult result = runner_.spread(
+            scene, nullptr,
+            fmt::format("map spread {}{}", runner_.map_spreads + 1, powder == 0 ? "" : " with powder B"));
         if (i == 0) {
             map.scene = scene;
             map.seed = packing_seed;
@@ -121,12 +141,6 @@ OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
         map.health.warnings.push_back(
             "the map was spread with level chambers: unequal fills are only in the confirmation");
     map.average();
-    // The spread is what costs: kept before anything is made of it.
-    if (journal_ && map.health.status != "interrupted") {
-        journal_->append(with(design, map, false), map.layers);
-        map.told = false;
-    }
-    return map;
 }
 
 Evaluation MapEvaluator::evaluate(const Design& design, std::uint64_t seed) {

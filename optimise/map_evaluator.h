@@ -47,6 +47,9 @@ class MapEvaluator : public Evaluator {
     /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
     /// `design`: its origins are as good as the strips'. `state_hash`: of that spread.
     void learn(const Design& design, const Layer& layer, const std::string& state_hash);
+    /// The design on a map of its own: one strip with powder B in every grain, on a bed that no other map has
+    /// seen. Held against the map of powder A it tells whether the two move alike.
+    Evaluation with_powder_b(const Design& design);
 
   private:
     using Key = std::array<double, 5>;
@@ -58,11 +61,14 @@ class MapEvaluator : public Evaluator {
     const Study& study_;
     SpreadRunner& runner_;
     Journal* journal_;
-    std::map<Key, OriginMap> maps_;
+    /// Spreads `count` strips into the map; `powder`: in every grain.
+    void fill(OriginMap& map, const Design& design, std::uint64_t seed, int count, int powder);
+
+    std::map<Key, OriginMap> maps_, maps_b_;
 };
 
-/// Do A and B move alike, so that a label moves nothing and a spread with both is a map as good as one
-/// without labels? Same sizes, densities within 5 %.
+/// Do A and B move alike by what they are, so that a label moves nothing and a spread with both is a map as
+/// good as one without labels? Same sizes, densities within 5 %. Else a strip of B decides (powder_gate.h).
 bool moves_alike(const Study& study);
 
 /// Periodic strip laid side by side until it fills `width`: y-homogeneity as a picture, and for plain bins

@@ -67,6 +67,7 @@ class MapStrategy {
         run_.enter("fit");
         if (!place_partition({})) return run_.fail("No partition could be fitted: " + fit_message_);
         stated_comparisons();
+        hold_powders_apart();
 
         std::vector<ConfirmedDesign> rounds = {unconfirmed(predicted_)};
         while (confirm_or_correct(rounds)) {
@@ -291,13 +292,35 @@ class MapStrategy {
         run_.result.kinematic = kinematic.evaluate(predicted_.design, 0);
     }
 
+    /// Powders unlike by what they are: one strip of B tells whether they move alike all the same. Its price
+    /// is a strip; two spreads are left for confirmations in any case.
+    void hold_powders_apart() {
+        if (alike_ || run_.spreads_left() <= kReserve) return;
+        run_.enter("gate");
+        const Evaluation all_b = run_.map.with_powder_b(predicted_.design);
+        run_.record("gate", all_b, "the same partition on a strip of powder B alone");
+        if (!all_b.health.ok()) {
+            run_.warn({fmt::format("no strip of powder B alone ({}): the two powders count as unlike",
+                                   all_b.health.reason)});
+            return;
+        }
+        const PowderGate gate = powder_gate(predicted_, all_b, run_.result.weight);
+        run_.result.powder_gate = gate;
+        alike_ = gate.passes;
+        if (!alike_)
+            run_.warn({fmt::format(
+                "powders A and B move differently: on a strip of B alone GI differs by {:.3f} rms "
+                "(noise {:.3f}, p = {:.2g}; drift p = {:.2g}). The map is a first guess; only "
+                "spreads with both powders count",
+                gate.difference, gate.noise, gate.p_value, gate.drift_p_value)});
+    }
+
     /// The next design after a spread that contradicted the map. Powders that move alike: the difference is
     /// the beds' chance, and the full spread's origins go into the map, four strips' worth of them on the
     /// coupon. Else manifold mapping: aim the map at target - (confirmed - map), so that map + discrepancy
     /// meets the target; on like powders that would build half of one bed's chance into the partition.
     ConfirmedDesign correct(const ConfirmedDesign& round, bool profile, bool drift) {
-        if (moves_alike(study_) && motion_.fill_fraction[0] == motion_.fill_fraction[1] &&
-            round.layers.front().periodic) {
+        if (alike_ && motion_.fill_fraction[0] == motion_.fill_fraction[1] && round.layers.front().periodic) {
             for (std::size_t k = 0; k < round.layers.size(); ++k)
                 run_.map.learn(motion_, round.layers[k], round.confirmations.at(k).state_hash);
             return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};
@@ -358,6 +381,7 @@ class MapStrategy {
     Evaluation predicted_;  ///< of the design in force, on the map
     Correction correction_;
     std::string fit_message_;
+    bool alike_ = moves_alike(study_);
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Runs spreads for the evaluators: passes threads, cache, progress and stop on, and keeps the account of what
 // was spent.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,7 +26,8 @@ class SpreadRunner {
     int map_spreads = 0,
         full_spreads =
             0;  ///< counted by the evaluators: every spread whose result was asked for, cached or not
-    double seconds_saved = 0;  ///< stored cost of what came from a cache [s]
+    std::function<void(const std::string& reason)> on_loss;  ///< a finished spread could not be kept
+    double seconds_saved = 0;                                ///< stored cost of what came from a cache [s]
 
   private:
     RunOptions options_;

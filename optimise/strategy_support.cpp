@@ -42,7 +42,7 @@ std::string with_interval(const Misfit& misfit) {
 StrategyRun::StrategyRun(const Study& given, const RunOptions& options)
     : study(within_budget(given)),
       runner(options),
-      journal(options.journal_folder),
+      journal(options.journal_folder, options.resume),
       map(study, runner, &journal),
       full(study, runner, &journal),
       begun_(std::chrono::steady_clock::now()),
@@ -58,6 +58,7 @@ StrategyRun::StrategyRun(const Study& given, const RunOptions& options)
         runner.halt();  // what is there is reported; more could not be kept
         if (result.unwritten.empty()) result.unwritten = reason;
     };
+    runner.on_loss = [this](const std::string& reason) { warn({reason}); };
     result.given_used.emplace_back("threads", fmt::format("{} -> {}", options.threads, result.threads));
     result.given_used.emplace_back("run.map_spreads",
                                    fmt::format("{} -> {}", given.map_spreads, study.map_spreads));

@@ -3,6 +3,16 @@
 
 namespace gradwright {
 
+const char* to_string(Family family) {
+    return kFamilies.at(static_cast<std::size_t>(family));
+}
+
+std::optional<Family> family_of(std::string_view name) {
+    for (std::size_t i = 0; i < kFamilies.size(); ++i)
+        if (name == kFamilies[i]) return static_cast<Family>(i);
+    return {};
+}
+
 Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64_t seed) {
     Scene scene = study.scene;
     scene.width = strip ? study.strip_width : study.dispenser_width;

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dem/gradation.h"
@@ -30,11 +31,15 @@ struct Variable {
     double low = 0, high = 0;
 };
 
-enum class Family { straight, polyline };
+enum class Family { straight, polyline, sigmoid, spline, two_curves };
+inline constexpr std::array<const char*, 5> kFamilies = {"straight", "polyline", "sigmoid", "spline",
+                                                         "two_curves"};  ///< in the order of the enum
+const char* to_string(Family family);
+std::optional<Family> family_of(std::string_view name);
 
 struct DesignSpace {
     Family family = Family::polyline;
-    int knots = 5;                                            ///< polyline: >= 2
+    int knots = 5;                                            ///< polyline, spline, two_curves: >= 2
     bool monotone = true;                                     ///< polyline: y never turns back along x
     double minimum_segment = 0.1e-3;                          ///< [m]
     Variable angle_deg{"partition.angle", 5, true, -90, 90};  ///< straight [deg]
@@ -42,6 +47,15 @@ struct DesignSpace {
                     0};  ///< straight, y offset of the pivot [m]; bounds (0,0) = from the width
     std::vector<PlanPoint>
         given_points;  ///< polyline fixed or started by the user; empty = closed-form start
+    std::vector<PlanPoint> given_second;  ///< two_curves: the second curve, fixed with the first
+    // sigmoid, free with bounds (0,0) = from the dispenser's size (partition_family.h)
+    Variable centre{"partition.centre", 0, true, 0, 0};  ///< y midway between the plateaus [m]
+    Variable height{"partition.height", 0, true, 0, 0};  ///< between the plateaus, + rises with x [m]
+    Variable place{"partition.place", 0, true, 0, 0};    ///< x of the middle [m]
+    Variable width_10_90{"partition.width_10_90", 0, true, 0,
+                         0};              ///< way in x of 10 to 90 % of the height [m]
+    double minimum_bend_radius = 0.3e-3;  ///< sigmoid, spline [m]; 0 = none
+    double clearance = 0.24e-3;           ///< two_curves: least gap along y [m]
     bool partition_free = true;
     std::array<Variable, 2> fill_fraction = {Variable{"fill_fraction.A", 1}, Variable{"fill_fraction.B", 1}};
     // motion variables: each new value needs a new spread

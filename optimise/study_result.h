@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "optimise/evaluation.h"
+#include "optimise/powder_gate.h"
 
 namespace gradwright {
 
 struct HistoryEntry {
     int iteration = 0;
-    std::string stage;  ///< "start", "map", "confirm", "correct", "bobyqa"
+    std::string stage;  ///< "start", "map", "confirm", "correct", or the strategy's name
     Fidelity fidelity = Fidelity::map;
     double objective = 0, misfit = 0, drift = 0;
     int spreads = 0;     ///< spent so far
@@ -33,6 +34,7 @@ struct StudyResult {
         band_high;                       ///< per bin; simultaneous 95 % band of the confirmed profile
     std::optional<Evaluation> straight;  ///< the best straight partition on the same map: stated comparison
     std::optional<Evaluation> kinematic;
+    std::optional<PowderGate> powder_gate;  ///< unlike powders only
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0,
            waste_a_share = 0;
     int spreads_map = 0, spreads_full = 0;

@@ -66,6 +66,12 @@ class Sheet {
         left_ = kFrame + kRoomLeft + (room_x - length_ * scale_) / 2;
         bottom_ = kFrame + kRoomTop + room_y - (room_y - width_ * scale_) / 2;
         rows_ = partition_rows(study, result.design);
+        // A smooth curve comes as many corners: the plan names and dimensions a dozen of them, the table
+        // lists what it has room for, the file has all.
+        const Family family = result.design.family;
+        const bool smooth = family == Family::sigmoid || family == Family::spline;
+        every_named_ = smooth ? 1 + rows_.size() / 12 : 1;
+        every_listed_ = smooth ? 1 + rows_.size() / 36 : 1;
     }
 
     std::string svg() {
@@ -151,11 +157,10 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
     }
 
     void letters() {
-        const auto centres =
-            chamber_centres(result_.design.partition, study_.scene.dispenser_length, study_.dispenser_width);
-        for (std::size_t side : {0u, 1u}) {
-            if (!std::isfinite(centres[side].x)) continue;
-            const double x = sx(centres[side].x * 1e3), y = sy(centres[side].y * 1e3);
+        for (const auto& [side, at] : chamber_letters(result_.design.partition, study_.scene.dispenser_length,
+                                                      study_.dispenser_width)) {
+            if (!std::isfinite(at.x)) continue;
+            const double x = sx(at.x * 1e3), y = sy(at.y * 1e3);
             text(x, y + 1.6, side == 0 ? "A" : "B", "side",
                  fmt::format(R"(style="fill:{}")", side == 0 ? kBlue : "#9A6A00"));
             text(x, y + 6, study_.scene.powder[side].material.name, "powder");
@@ -164,18 +169,22 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
 
     void partition() {
         if (rows_.size() < 2) return;
-        std::string points;
-        for (const PartitionRow& row : rows_)
-            points += fmt::format("{:.3f},{:.3f} ", sx(row.x_mm), sy(row.y_mm));
-        add(fmt::format(R"(<polyline points="{}" class="cut"/>)", points));
+        for (const int curve : {1, 2}) {
+            std::string points;
+            for (const PartitionRow& row : rows_)
+                if (row.curve == curve) points += fmt::format("{:.3f},{:.3f} ", sx(row.x_mm), sy(row.y_mm));
+            if (!points.empty()) add(fmt::format(R"(<polyline points="{}" class="cut"/>)", points));
+        }
         for (std::size_t i = 0; i < rows_.size(); ++i) {
+            if (!shown(i, every_named_)) continue;
             const double x = sx(rows_[i].x_mm), y = sy(rows_[i].y_mm);
             add(fmt::format(
                 R"(<circle cx="{:.3f}" cy="{:.3f}" r=".9" fill="#fff" stroke="#111" stroke-width=".35"/>)", x,
                 y));
             // the name stands off the line, on the outer side of the corner, kept inside the walls
-            const PartitionRow &before = rows_[i ? i - 1 : 0],
-                               &after = rows_[std::min(i + 1, rows_.size() - 1)];
+            const bool begins = i == 0 || rows_[i - 1].curve != rows_[i].curve,
+                       ends = i + 1 == rows_.size() || rows_[i + 1].curve != rows_[i].curve;
+            const PartitionRow &before = rows_[begins ? i : i - 1], &after = rows_[ends ? i : i + 1];
             const double tx = after.x_mm - before.x_mm, ty = -(after.y_mm - before.y_mm),
                          size = std::hypot(tx, ty);
             double nx = size > 0 ? ty / size : 0, ny = size > 0 ? -tx / size : -1;
@@ -187,9 +196,12 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
             double px = x + 3.6 * nx, py = y + 3.6 * ny + 1;
             px = std::clamp(px, sx(0) + 3.2, sx(length_) - 3.2);
             py = std::clamp(py, sy(width_) + 3.4, sy(0) - 1.4);
-            text(px, py, fmt::format("P{}", rows_[i].number), "corner");
+            text(px, py, rows_[i].name(), "corner");
         }
     }
+
+    /// Every n-th corner and the last.
+    bool shown(std::size_t i, std::size_t every) const { return i % every == 0 || i + 1 == rows_.size(); }
 
     /// Ordinate dimensions (ISO 129-1 running dimensions from one origin): x below the dispenser, y on its
     /// left.
@@ -197,8 +209,10 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
         for (bool along_x : {true, false}) {
             std::vector<std::pair<double, double>> marks = {
                 {0, 0}};  // ordinate, nearest corner's other coordinate
-            for (const PartitionRow& row : rows_)
-                marks.emplace_back(along_x ? row.x_mm : row.y_mm, along_x ? row.y_mm : row.x_mm);
+            for (std::size_t i = 0; i < rows_.size(); ++i)
+                if (shown(i, every_named_))
+                    marks.emplace_back(along_x ? rows_[i].x_mm : rows_[i].y_mm,
+                                       along_x ? rows_[i].y_mm : rows_[i].x_mm);
             std::sort(marks.begin(), marks.end());
             std::vector<std::pair<double, double>> unique;
             for (const auto& mark : marks)
@@ -271,10 +285,13 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
         y += 3.4;
         line(x, y + 1.4, right, y + 1.4, "thin");
         const double room = kSheetHeight - kFrame - kTitleHeight - 34 - y;
-        const double step = std::min(5.0, rows_.empty() ? 5.0 : room / static_cast<double>(rows_.size()));
-        for (const PartitionRow& row : rows_) {
+        const std::size_t listed = (rows_.size() + every_listed_ - 1) / every_listed_;
+        const double step = std::min(5.0, rows_.empty() ? 5.0 : room / static_cast<double>(listed));
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            if (!shown(i, every_listed_)) continue;
+            const PartitionRow& row = rows_[i];
             y += step;
-            text(x, y, fmt::format("P{}", row.number), "num", R"(font-weight="bold")");
+            text(x, y, row.name(), "num", R"(font-weight="bold")");
             text(columns[0], y, millimetres(row.x_mm * 1e-3), "numr");
             text(columns[1], y, millimetres(row.y_mm * 1e-3), "numr");
             if (std::isfinite(row.length_mm)) {
@@ -292,6 +309,13 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
             text(x, y, words, "label");
             y += 3.6;
         }
+        const PartitionCurve& partition = result_.design.partition;
+        if (!partition.second.empty())
+            text(x, y,
+                 fmt::format("Two curves, P and Q: {} between them.", partition.a_between() ? "A" : "B"),
+                 "label");
+        else if (every_named_ > 1)
+            text(x, y, "Smooth: corners within 0.002 of the curve.", "label");
         line(x - 4, kFrame, x - 4, kSheetHeight - kFrame - kTitleHeight, "thin");
     }
 
@@ -343,6 +367,7 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
     const StudyResult& result_;
     double length_, width_, scale_ = 1, left_ = 0, bottom_ = 0;  // [mm], drawn mm per mm, sheet mm
     std::vector<PartitionRow> rows_;
+    std::size_t every_named_ = 1, every_listed_ = 1;
     std::string out_;
 };
 
@@ -381,8 +406,9 @@ std::string escaped(std::string_view text) {
 std::array<std::vector<PlanPoint>, 2> chamber_outlines(const PartitionCurve& partition, double length,
                                                        double width) {
     const std::vector<PlanPoint> rectangle = {{0, 0}, {length, 0}, {length, width}, {0, width}};
-    const auto curve =
-        partition.points.size() >= 2 ? partition.clipped(length, width) : std::vector<PlanPoint>{};
+    auto curve = partition.points.size() >= 2 ? partition.clipped(length, width) : std::vector<PlanPoint>{};
+    auto second = partition.second_clipped(length, width);
+    if (curve.size() < 2) std::swap(curve, second);  // the other curve alone divides the dispenser
     if (curve.size() < 2) {
         const bool all_a = partition.points.size() >= 2 && partition.on_side_a(length / 2, width / 2);
         return {all_a ? rectangle : std::vector<PlanPoint>{}, all_a ? std::vector<PlanPoint>{} : rectangle};
@@ -405,17 +431,37 @@ std::array<std::vector<PlanPoint>, 2> chamber_outlines(const PartitionCurve& par
     const double corner_way[] = {0, length, length + width, 2 * length + width};
     // A lies on the left of the curve, so the curve followed by the walls counter-clockwise back to its start
     // bounds A.
-    const auto close = [&](std::vector<PlanPoint> outline) {
+    const auto walk = [&](std::vector<PlanPoint>& outline, const PlanPoint& target) {
         const double from = way(outline.back());
-        double to = way(outline.front());
+        double to = way(target);
         if (to <= from) to += perimeter;
         for (double turn : {0.0, perimeter})
             for (std::size_t c = 0; c < 4; ++c)
                 if (corner_way[c] + turn > from + 1e-12 && corner_way[c] + turn < to - 1e-12)
                     outline.push_back(rectangle[c]);
+    };
+    const auto close = [&](std::vector<PlanPoint> outline) {
+        const PlanPoint start = outline.front();
+        walk(outline, start);
         return outline;
     };
-    return {close(curve), close({curve.rbegin(), curve.rend()})};
+    const std::vector<PlanPoint> back = {curve.rbegin(), curve.rend()};
+    if (second.size() < 2) return {close(curve), close(back)};
+    const std::vector<PlanPoint> second_back = {second.rbegin(), second.rend()};
+    const bool a_inside = partition.a_between();
+    // inner: along one curve, by the wall to the other, along it and back
+    std::vector<PlanPoint> inner = a_inside ? curve : back;
+    const std::vector<PlanPoint>& other = a_inside ? second : second_back;
+    walk(inner, other.front());
+    inner.insert(inner.end(), other.begin(), other.end());
+    const PlanPoint start = inner.front();
+    walk(inner, start);
+    std::vector<PlanPoint> outer = close(a_inside ? back : curve);
+    const std::vector<PlanPoint> beyond = close(a_inside ? second_back : second);
+    outer.push_back(outer.front());
+    outer.insert(outer.end(), beyond.begin(), beyond.end());
+    outer.push_back(beyond.front());
+    return a_inside ? std::array{inner, outer} : std::array{outer, inner};
 }
 
 std::array<PlanPoint, 2> chamber_centres(const PartitionCurve& partition, double length, double width) {
@@ -436,6 +482,22 @@ std::array<PlanPoint, 2> chamber_centres(const PartitionCurve& partition, double
             }
         }
     return centres;
+}
+
+std::vector<ChamberLetter> chamber_letters(const PartitionCurve& partition, double length, double width) {
+    const auto centres = chamber_centres(partition, length, width);
+    std::vector<ChamberLetter> letters = {{0, centres[0]}, {1, centres[1]}};
+    const std::size_t outer = partition.a_between() ? 1 : 0;
+    if (partition.second.empty() || !std::isfinite(centres[outer].x)) return letters;
+    // the outer powder has a letter beyond one curve; look beyond the other
+    const auto beyond = [outer](const std::vector<PlanPoint>& curve, PlanPoint p) {
+        return PartitionCurve{curve}.on_side_a(p.x, p.y) == (outer == 0);
+    };
+    const bool has_first = beyond(partition.points, centres[outer]);
+    const PartitionCurve other{has_first ? partition.second : partition.points};
+    const PlanPoint third = chamber_centres(other, length, width)[outer];
+    if (std::isfinite(third.x)) letters.push_back({outer, third});
+    return letters;
 }
 
 }  // namespace gradwright

@@ -16,13 +16,22 @@ namespace gradwright {
 std::string partition_svg(const Study& study, const StudyResult& result);
 
 /// Outlines of chamber A and chamber B in the dispenser's rectangle [m], counter-clockwise. Without a
-/// partition inside the dispenser one of them is the whole rectangle and the other empty.
+/// partition inside the dispenser one of them is the whole rectangle and the other empty. Of two curves the
+/// outer powder's two chambers come as one outline, joined by a seam of no width.
 std::array<std::vector<PlanPoint>, 2> chamber_outlines(const PartitionCurve& partition, double length,
                                                        double width);
 
 /// The point of each chamber that is farthest from partition and walls: where its letter stands. {NaN, NaN}
 /// for an empty chamber.
 std::array<PlanPoint, 2> chamber_centres(const PartitionCurve& partition, double length, double width);
+
+/// A letter of the plan: 0 = A, 1 = B.
+struct ChamberLetter {
+    std::size_t side = 0;
+    PlanPoint at;
+};
+/// The two of chamber_centres, and one more where the outer powder of two curves fills a second chamber.
+std::vector<ChamberLetter> chamber_letters(const PartitionCurve& partition, double length, double width);
 
 /// & < > " ' as entities, for text and attributes of HTML and XML. Control characters, which XML forbids,
 /// become spaces.

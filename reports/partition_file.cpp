@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "reports/json_support.h"
@@ -48,16 +50,31 @@ json powder_json(const Powder& powder) {
 json partition_json(const Study& study, const StudyResult& result) {
     const double length = study.scene.dispenser_length, width = study.dispenser_width;
     const auto rows = partition_rows(study, result.design);
-    json corners = json::array(), points_m = json::array(), points_mm = json::array();
+    json corners = json::array();
+    std::array<json, 2> points_m = {json::array(), json::array()}, points_mm = points_m;
     for (const PartitionRow& row : rows) {
-        corners.push_back({{"name", fmt::format("P{}", row.number)},
+        const std::size_t curve = static_cast<std::size_t>(row.curve) - 1;
+        corners.push_back({{"name", row.name()},
                            {"x_mm", number(row.x_mm)},
                            {"y_mm", number(row.y_mm)},
                            {"segment_length_mm", number(row.length_mm)},
                            {"segment_angle_deg", number(row.angle_deg)}});
-        points_m.push_back({number(row.x_mm * 1e-3), number(row.y_mm * 1e-3)});
-        points_mm.push_back({number(row.x_mm), number(row.y_mm)});
+        points_m[curve].push_back({number(row.x_mm * 1e-3), number(row.y_mm * 1e-3)});
+        points_mm[curve].push_back({number(row.x_mm), number(row.y_mm)});
     }
+    const bool pair = !result.design.partition.second.empty();
+    const char* const curves =
+        pair ? "of each directed curve, P1, P2, ... and Q1, Q2, ..." : "of the directed curve P1, P2, ...";
+    const auto end = [&](std::size_t curve, bool first) {
+        const auto on = [curve](const PartitionRow& row) { return row.curve == int(curve) + 1; };
+        if (first) return *std::find_if(rows.begin(), rows.end(), on);
+        return *std::find_if(rows.rbegin(), rows.rend(), on);
+    };
+    const auto ends = [&](std::size_t curve) {
+        if (points_m[curve].size() < 2) return json(nullptr);
+        return json({{"first", end_offset(end(curve, true), length * 1e3, width * 1e3)},
+                     {"last", end_offset(end(curve, false), length * 1e3, width * 1e3)}});
+    };
     const bool inside = rows.size() >= 2;
     const double area_a = inside ? result.design.partition.area_a(length, width) : std::nan("");
     const Scene scene = scene_of(study, result.design, false, result.seed);
@@ -74,25 +91,28 @@ json partition_json(const Study& study, const StudyResult& result) {
           {"length_mm", number(length * 1e3)},
           {"width_mm", number(width * 1e3)},
           {"depth_mm", number(study.scene.dispenser_depth * 1e3)}}},
-        {"points_m", points_m},
-        {"points_mm", points_mm},
+        {"points_m", points_m[0]},
+        {"points_mm", points_mm[0]},
         {"corners", corners},
-        {"ends", inside ? json({{"first", end_offset(rows.front(), length * 1e3, width * 1e3)},
-                                {"last", end_offset(rows.back(), length * 1e3, width * 1e3)}})
-                        : json(nullptr)},
+        {"ends", ends(0)},
         {"sides",
          {{"A",
-           {{"where", "left of the directed curve P1, P2, ..."},
+           {{"where", fmt::format("left {}", curves)},
             {"area_m2", number(area_a)},
             {"powder", powder_json(scene.powder[0])}}},
           {"B",
-           {{"where", "right of the directed curve P1, P2, ..."},
+           {{"where", fmt::format("right {}{}", pair ? "of either " : "", curves)},
             {"area_m2", number(length * width - area_a)},
             {"powder", powder_json(scene.powder[1])}}}}},
         {"plate_thickness_m", number(scene.plate_thickness)},
         {"dose_height_m", number(scene.dose_height)},
         {"headspace_m", {{"A", number(scene.headspace[0])}, {"B", number(scene.headspace[1])}}},
     };
+    if (pair) {
+        object["points2_m"] = points_m[1];
+        object["points2_mm"] = points_mm[1];
+        object["ends2"] = ends(1);
+    }
     object.update(design_json(
         study, result.design));  // partition{family, parameters, ...}, fill_fraction, dosage_factor, land_m
     return object;

@@ -58,6 +58,11 @@ json plan_json(const Study& study, const StudyResult& result) {
     const double length = study.scene.dispenser_length, width = study.dispenser_width;
     const auto outlines = chamber_outlines(result.design.partition, length, width);
     const auto centres = chamber_centres(result.design.partition, length, width);
+    const auto letters = chamber_letters(result.design.partition, length, width);
+    auto outer = json::array();  // the chamber beyond the second curve, with the letter of its powder
+    for (std::size_t i = 2; i < letters.size(); ++i)
+        outer.push_back({{"side", letters[i].side == 0 ? "a" : "b"},
+                         {"at", {number(letters[i].at.x), number(letters[i].at.y)}}});
     std::vector<PlanPoint> curve, straight;
     if (result.design.partition.points.size() >= 2) curve = result.design.partition.clipped(length, width);
     if (result.straight && result.straight->design.partition.points.size() >= 2)
@@ -80,6 +85,8 @@ json plan_json(const Study& study, const StudyResult& result) {
             {"centre_a", {number(centres[0].x), number(centres[0].y)}},
             {"centre_b", {number(centres[1].x), number(centres[1].y)}},
             {"curve", plan_points(curve)},
+            {"curve2", plan_points(result.design.partition.second_clipped(length, width))},
+            {"more_centres", outer},
             {"straight", plan_points(straight)}};
 }
 
@@ -115,6 +122,7 @@ json build_json(const Study& study, const StudyResult& result) {
     auto rows = json::array();
     for (const PartitionRow& row : partition_rows(study, result.design))
         rows.push_back({{"number", row.number},
+                        {"name", row.name()},
                         {"x_mm", number(row.x_mm)},
                         {"y_mm", number(row.y_mm)},
                         {"length_mm", number(row.length_mm)},

@@ -78,7 +78,7 @@ json evaluation_summary(const Study& study, const Evaluation& evaluation) {
 
 json history_json(const StudyResult& result) {
     auto rows = json::array();
-    for (const HistoryEntry& entry : result.history)
+    for (const HistoryEntry& entry : result.history) {
         rows.push_back({{"iteration", entry.iteration},
                         {"stage", entry.stage},
                         {"fidelity", to_string(entry.fidelity)},
@@ -89,6 +89,9 @@ json history_json(const StudyResult& result) {
                         {"seconds", number(entry.seconds)},
                         {"points_m", plan_points(entry.design.partition.points)},
                         {"note", entry.note}});
+        if (!entry.design.partition.second.empty())
+            rows.back()["points2_m"] = plan_points(entry.design.partition.second);
+    }
     return rows;
 }
 
@@ -135,6 +138,15 @@ json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
     return rows;
 }
 
+json gate_json(const std::optional<PowderGate>& gate) {
+    if (!gate) return nullptr;
+    return {{"passes", gate->passes},
+            {"difference", number(gate->difference)},
+            {"noise", number(gate->noise)},
+            {"p_value", number(gate->p_value)},
+            {"drift_p_value", number(gate->drift_p_value)}};
+}
+
 json beds_json(const StudyResult& result) {
     auto rows = json::array();
     for (const BedFacts& bed : result.beds)
@@ -165,13 +177,19 @@ json misfit_json(const Misfit& misfit) {
 json design_json(const Study& study, const Design& design) {
     json parameters = json::object();
     for (const auto& [name, value] : design.parameters) parameters[name] = number(value);
-    json partition = {{"family", design.family == Family::straight ? "straight" : "polyline"},
+    json partition = {{"family", to_string(design.family)},
                       {"parameters", parameters},
                       {"points_m", plan_points(design.partition.points)},
                       {"points_in_dispenser_m", json::array()}};
     if (design.partition.points.size() >= 2)
         partition["points_in_dispenser_m"] =
             plan_points(design.partition.clipped(study.scene.dispenser_length, study.dispenser_width));
+    if (!design.partition.second.empty()) {
+        partition["points2_m"] = plan_points(design.partition.second);
+        partition["points2_in_dispenser_m"] =
+            plan_points(design.partition.second_clipped(study.scene.dispenser_length, study.dispenser_width));
+        partition["between"] = design.partition.a_between() ? "A" : "B";
+    }
     return {
         {"partition", partition},
         {"fill_fraction", {{"A", number(design.fill_fraction[0])}, {"B", number(design.fill_fraction[1])}}},
@@ -242,6 +260,7 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
             {"predicted", evaluation_summary(study, result.predicted)},
             {"confirmations", confirmations},
             {"straight", result.straight ? evaluation_summary(study, *result.straight) : json(nullptr)},
+            {"powder_gate", gate_json(result.powder_gate)},
             {"kinematic", result.kinematic ? evaluation_summary(study, *result.kinematic) : json(nullptr)},
             {"beds", beds_json(result)},
             {"history", history_json(result)},

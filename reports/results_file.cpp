@@ -112,6 +112,7 @@ Axis variable_axis(const StudyResult& result) {
 std::string variable_unit(const std::string& name) {
     if (name.find("angle") != std::string::npos) return "deg";
     if (name.rfind("fill_fraction", 0) == 0 || name == "dosage_factor") return "1";
+    if (name == "a_below" || name == "b_between") return "1";  // 1 where it is so
     return "m";
 }
 
@@ -130,7 +131,8 @@ void write_variables(Table& table, H5Writer& file, const Study& study, const Stu
             if (candidate->name == name) bounds = candidate;
         low.push_back(bounds && bounds->free ? bounds->low : kUndefined);
         high.push_back(bounds && bounds->free ? bounds->high : kUndefined);
-        free.push_back(bounds ? bounds->free : space.partition_free);
+        const bool follows = name == "least_bend_radius_m";  // from the others
+        free.push_back(bounds ? bounds->free : space.partition_free && !follows);
     }
     table.texts("/variables/name", axis.names, "design variable");
     file.make_scale("/variables/name", "variable");
@@ -291,14 +293,18 @@ void write_result(Table& table, H5Writer& file, const Study& study, const StudyR
         table.numbers(root + profile.name, padded(profile.values, bins), "1", profile.long_name);
         file.attach_scale(root + profile.name, "/bins/y_m", 0);
     }
-    std::vector<double> points, inside;
+    std::vector<double> points, inside, points2;
     for (const PlanPoint& p : result.design.partition.points) points.insert(points.end(), {p.x, p.y});
+    for (const PlanPoint& p : result.design.partition.second) points2.insert(points2.end(), {p.x, p.y});
     for (const PartitionRow& row : partition_rows(study, result.design))
-        inside.insert(inside.end(), {row.x_mm * 1e-3, row.y_mm * 1e-3});
+        if (row.curve == 1) inside.insert(inside.end(), {row.x_mm * 1e-3, row.y_mm * 1e-3});
     table.grid(root + "partition_points", points, {points.size() / 2, 2}, "m",
                "corners (x, y) of the partition, A on the left");
     table.grid(root + "partition_points_in_dispenser", inside, {inside.size() / 2, 2}, "m",
                "corners (x, y) of the partition, ends on the dispenser's walls");
+    if (!points2.empty())
+        table.grid(root + "partition_points2", points2, {points2.size() / 2, 2}, "m",
+                   "corners (x, y) of the second curve, A on the left");
     std::vector<const GradationMap*> maps;
     for (const Evaluation& confirmation : result.confirmations) maps.push_back(&confirmation.map);
     if (maps.empty()) maps.push_back(&result.predicted.map);

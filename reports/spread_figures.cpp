@@ -43,7 +43,8 @@ void measure_line(const Study& study, const Design& design, const Layer& layer,
     out.y_high = high->y;
     const double extent = out.y_high - out.y_low, d50 = study.scene.powder[0].size.d50;
     const double middle = 0.5 * study.scene.dispenser_length;
-    const bool rises = design.partition.on_side_a(middle, out.y_high + extent + d50);
+    // of two curves the line is the first one's
+    const bool rises = PartitionCurve{design.partition.points}.on_side_a(middle, out.y_high + extent + d50);
     // a level partition has no slope, only a step
     out.unmixed_slope = extent > 0 ? (rises ? 1 : -1) / extent : std::numeric_limits<double>::quiet_NaN();
     const double bin =

@@ -73,11 +73,10 @@ std::string summary(const Study& study, const StudyResult& result, const std::st
     if (rows.size() < 2) {
         text += line("build", words.build);
     } else {
-        text += line("build", result.design.family == Family::straight
-                                  ? "straight partition, corners in mm from rear wall and y = 0 side"
-                                  : "polyline partition, corners in mm from rear wall and y = 0 side");
+        text +=
+            line("build", partition_name(result.design) + ", corners in mm from rear wall and y = 0 side");
         for (const PartitionRow& row : rows)
-            text += fmt::format("              P{:<3} x {:>8}   y {:>8}\n", row.number,
+            text += fmt::format("              {:<4} x {:>8}   y {:>8}\n", row.name(),
                                 millimetres(row.x_mm * 1e-3), millimetres(row.y_mm * 1e-3));
     }
     for (std::size_t i = 0; i < words.fill.size(); ++i) text += line(i == 0 ? "fill" : "", words.fill[i]);

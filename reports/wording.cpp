@@ -101,18 +101,35 @@ std::string duration(double seconds) {
 std::vector<PartitionRow> partition_rows(const Study& study, const Design& design) {
     std::vector<PartitionRow> rows;
     if (design.partition.points.size() < 2) return rows;
-    const auto points = design.partition.clipped(study.scene.dispenser_length, study.dispenser_width);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        PartitionRow row{static_cast<int>(i) + 1, points[i].x * 1e3, points[i].y * 1e3,
-                         std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-        if (i + 1 < points.size()) {
-            const double dx = points[i + 1].x - points[i].x, dy = points[i + 1].y - points[i].y;
-            row.length_mm = std::hypot(dx, dy) * 1e3;
-            row.angle_deg = std::atan2(dy, dx) * 180 / std::numbers::pi;
+    const double length = study.scene.dispenser_length, width = study.dispenser_width;
+    const auto list = [&rows](int curve, const std::vector<PlanPoint>& points) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            PartitionRow row{curve,
+                             static_cast<int>(i) + 1,
+                             points[i].x * 1e3,
+                             points[i].y * 1e3,
+                             std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN()};
+            if (i + 1 < points.size()) {
+                const double dx = points[i + 1].x - points[i].x, dy = points[i + 1].y - points[i].y;
+                row.length_mm = std::hypot(dx, dy) * 1e3;
+                row.angle_deg = std::atan2(dy, dx) * 180 / std::numbers::pi;
+            }
+            rows.push_back(row);
         }
-        rows.push_back(row);
-    }
+    };
+    list(1, design.partition.clipped(length, width));
+    list(2, design.partition.second_clipped(length, width));
     return rows;
+}
+
+std::string partition_name(const Design& design) {
+    const std::string name = to_string(design.family);
+    if (design.family == Family::sigmoid || design.family == Family::spline)
+        return name + " partition, its corners within 0.002 mm of the curve";
+    if (design.family == Family::two_curves)
+        return fmt::format("two partitions with {} between them", design.partition.a_between() ? "A" : "B");
+    return name + " partition";
 }
 
 Wording wording(const Study& study, const StudyResult& result) {
@@ -177,11 +194,12 @@ Wording wording(const Study& study, const StudyResult& result) {
     if (rows.size() < 2) {
         words.build = "no partition inside the dispenser";
     } else {
-        words.build =
-            result.design.family == Family::straight ? "straight partition, mm:" : "polyline partition, mm:";
-        for (const PartitionRow& row : rows)
+        words.build = partition_name(result.design) + ", mm:";
+        for (const PartitionRow& row : rows) {
+            if (row.curve == 2 && row.number == 1) words.build += " and";
             words.build +=
                 fmt::format(" ({}, {})", millimetres(row.x_mm * 1e-3), millimetres(row.y_mm * 1e-3));
+        }
     }
     if (rows.size() >= 2)
         for (int chamber : {0, 1}) words.fill.push_back(fill_line(study, result, chamber));

@@ -27,13 +27,19 @@ Wording wording(const Study& study, const StudyResult& result);
 
 /// One row per corner of the partition inside the dispenser, ends on the walls.
 struct PartitionRow {
-    int number = 0;             ///< from 1
+    int curve = 1;              ///< 2: of the second curve of a pair, listed after the first
+    int number = 0;             ///< from 1, on each curve
     double x_mm = 0, y_mm = 0;  ///< from the dispenser's rear wall and from its y = 0 side [mm]
     double length_mm = 0;       ///< of the segment that starts here [mm], NaN on the last row
     double angle_deg =
         0;  ///< of that segment from the spreading direction, + towards +y [deg], NaN on the last row
+
+    std::string name() const { return (curve == 1 ? "P" : "Q") + std::to_string(number); }
 };
 std::vector<PartitionRow> partition_rows(const Study& study, const Design& design);
+
+/// "polyline partition"; what its corners are where it is smooth, which powder stands between two curves.
+std::string partition_name(const Design& design);
 
 /// Part of a straight line name: a length in mm with three decimals (a workshop's micrometre).
 std::string millimetres(double metres);

@@ -6,12 +6,15 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 namespace gradwright {
 namespace {
+
+constexpr double kLargestWeight = 1e6;  // as for zones: beyond it the other bins might as well not be there
 
 /// s of the logistic 1/(1 + exp(-(y - centre)/s)): it passes 0.1 and 0.9 at centre -+ s ln 9.
 double logistic_scale(double width_10_90) {
@@ -47,6 +50,23 @@ double softplus(double t) {
     return t > 0 ? t + std::log1p(std::exp(-t)) : std::log1p(std::exp(t));
 }
 
+/// "GI 0.1 up to y = 0.4 mm, 0.5 from 0.7 to 0.9 mm, 0.9 from 1.2 mm on" of the knots of plateaus.
+std::string levels_text(const std::vector<double>& y, const std::vector<double>& gi) {
+    std::string text;
+    for (std::size_t k = 0, end = 0; k < y.size(); k = end + 1) {
+        for (end = k; end + 1 < y.size() && gi[end + 1] == gi[k];) ++end;
+        if (k == 0)
+            text += fmt::format("GI {:g} up to y = {:g} mm", gi[k], y[end] * 1e3);
+        else if (end + 1 == y.size())
+            text += fmt::format(", {:g} from {:g} mm on", gi[k], y[k] * 1e3);
+        else if (k == end)
+            text += fmt::format(", {:g} at {:g} mm", gi[k], y[k] * 1e3);
+        else
+            text += fmt::format(", {:g} from {:g} to {:g} mm", gi[k], y[k] * 1e3, y[end] * 1e3);
+    }
+    return text + ", straight between";
+}
+
 std::string trimmed(const std::string& text) {
     const char* blank = " \t\r\n\"";
     const std::size_t begin = text.find_first_not_of(blank);
@@ -70,6 +90,8 @@ double Target::operator()(double y) const {
         case TargetShape::sigmoid:
             return gi0 + (gi1 - gi0) / (1 + std::exp(-(y - centre) / logistic_scale(width_10_90)));
         case TargetShape::table:
+        case TargetShape::plateaus:
+        case TargetShape::aba:
             return interpolate(table_y, table_gi, y);
     }
     return gi0;
@@ -95,6 +117,8 @@ double Target::bin_mean(double y_low, double y_high) const {
                              (softplus((y_high - centre) / s) - softplus((y_low - centre) / s));
         }
         case TargetShape::table:
+        case TargetShape::plateaus:
+        case TargetShape::aba:
             return integrate(table_y, table_gi, y_low, y_high) / width;
     }
     return gi0;
@@ -105,6 +129,14 @@ double Target::weight(double y) const {
         if (y >= zone->y_low && y < zone->y_high) return zone->weight;
     }
     return 1;
+}
+
+std::pair<double, double> Target::gi_range() const {
+    if (shape == TargetShape::linear || shape == TargetShape::step || shape == TargetShape::sigmoid)
+        return {std::min(gi0, gi1), std::max(gi0, gi1)};
+    if (table_gi.empty()) return {0, 0};
+    const auto [low, high] = std::minmax_element(table_gi.begin(), table_gi.end());
+    return {*low, *high};
 }
 
 std::string Target::describe() const {
@@ -130,11 +162,25 @@ std::string Target::describe() const {
                                     table_y.back() * 1e3, table_gi.front(), table_gi.back());
             }
             break;
+        case TargetShape::plateaus:
+            text = "plateaus: " + levels_text(table_y, table_gi);
+            break;
+        case TargetShape::aba:
+            text = (table_gi.size() > 1 && table_gi[0] < table_gi[1] ? "B-A-B: " : "A-B-A: ") +
+                   levels_text(table_y, table_gi);
+            break;
     }
     for (const TargetZone& zone : zones) {
-        text += fmt::format(
-            "; {:g} to {:g} mm {}", zone.y_low * 1e3, zone.y_high * 1e3,
-            zone.weight == 0 ? std::string("don't care") : fmt::format("weight {:g}", zone.weight));
+        const bool below = std::isinf(zone.y_low), beyond = std::isinf(zone.y_high);
+        if (below && beyond)
+            text += "; everywhere";
+        else if (below)
+            text += fmt::format("; below {:g} mm", zone.y_high * 1e3);
+        else if (beyond)
+            text += fmt::format("; from {:g} mm on", zone.y_low * 1e3);
+        else
+            text += fmt::format("; {:g} to {:g} mm", zone.y_low * 1e3, zone.y_high * 1e3);
+        text += zone.weight == 0 ? std::string(" don't care") : fmt::format(" weight {:g}", zone.weight);
     }
     return text;
 }
@@ -168,6 +214,30 @@ Target step_target(double y, double gi_low, double gi_high) {
     return target;
 }
 
+Target plateaus_target(const std::vector<Plateau>& levels) {
+    Target target;
+    target.shape = TargetShape::plateaus;
+    const auto knot = [&](double y, double gi) {
+        target.table_y.push_back(y);
+        target.table_gi.push_back(gi);
+    };
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        const bool first = k == 0, last = k + 1 == levels.size();
+        if (!first) knot(levels[k].from, levels[k].gi);
+        // a level of no length is one knot, a peak
+        if (!last && (first || levels[k].to != levels[k].from)) knot(levels[k].to, levels[k].gi);
+    }
+    return target;
+}
+
+Target aba_target(double gi_outer, double gi_inner, double in_from, double in_to, double out_from,
+                  double out_to) {
+    Target target = plateaus_target(
+        {{gi_outer, in_from, in_from}, {gi_inner, in_to, out_from}, {gi_outer, out_to, out_to}});
+    target.shape = TargetShape::aba;
+    return target;
+}
+
 Target table_target(const std::string& csv_file) {
     std::ifstream in(csv_file);
     if (!in)
@@ -177,7 +247,8 @@ Target table_target(const std::string& csv_file) {
     target.shape = TargetShape::table;
     target.table_file = csv_file;
     double unit = 1;  // metres
-    int y_column = 0, gi_column = 1;
+    int y_column = 0, gi_column = 1, weight_column = -1;
+    std::vector<double> weights;
     std::string line, wrong;
     bool first = true;
     for (int number = 1; std::getline(in, line); ++number) {
@@ -199,29 +270,40 @@ Target table_target(const std::string& csv_file) {
             for (int c = 0; c < static_cast<int>(cells.size()); ++c) {
                 const std::string& name = cells[c];
                 if (name == "gi") found_gi = c;
+                if (name == "weight") weight_column = c;
                 if (name == "y" || name == "y_m" || name == "y_mm" || name == "y_um") {
                     found_y = c;
                     unit = name == "y_mm" ? 1e-3 : (name == "y_um" ? 1e-6 : 1);
                 }
             }
             if (found_y < 0 || found_gi < 0) {
-                fault(fmt::format("header '{}' must name the columns y_m, y_mm or y_um, and gi",
-                                  trimmed(line)));
+                fault(
+                    fmt::format("header '{}' must name the columns y_m, y_mm or y_um, and gi; weight is free",
+                                trimmed(line)));
                 break;  // without the columns every line below would be a fault of its own
             }
             y_column = found_y;
             gi_column = found_gi;
             continue;
         }
-        const int needed = std::max(y_column, gi_column) + 1;
+        // Without a header the first line says whether there is a third column.
+        if (was_first && cells.size() > 2) weight_column = 2;
+        const int needed = std::max({y_column, gi_column, weight_column}) + 1;
         if (static_cast<int>(cells.size()) < needed) {
-            fault(fmt::format("'{}' has {} column(s), {} are needed: y, gi", trimmed(line), cells.size(),
-                              needed));
+            fault(fmt::format("'{}' has {} column(s), {} are needed: y, gi{}", trimmed(line), cells.size(),
+                              needed, weight_column >= 0 ? ", weight" : ""));
             continue;
         }
         if (!to_number(cells[y_column], y) || !to_number(cells[gi_column], gi)) {
             fault(fmt::format("'{}': y and gi must be finite numbers with a decimal point", trimmed(line)));
             continue;
+        }
+        double weight = 1;
+        if (weight_column >= 0) {
+            if (!to_number(cells[weight_column], weight) || weight < 0 || weight > kLargestWeight)
+                fault(fmt::format("weight = '{}' must be a number in 0 .. {:g}, 0 for don't care",
+                                  cells[weight_column], kLargestWeight));
+            weights.push_back(weight);
         }
         if (gi < 0 || gi > 1) fault(fmt::format("gi = {:g} must lie in 0 .. 1", gi));
         if (!target.table_y.empty() && y * unit <= target.table_y.back()) {
@@ -234,7 +316,18 @@ Target table_target(const std::string& csv_file) {
     if (wrong.empty() && target.table_y.size() < 2) {
         wrong = fmt::format("{}: {} data line(s), at least 2 are needed", csv_file, target.table_y.size());
     }
+    if (wrong.empty() && !weights.empty() && *std::max_element(weights.begin(), weights.end()) == 0)
+        wrong = fmt::format("{}: every weight is 0: give at least one line a weight above 0", csv_file);
     if (!wrong.empty()) throw std::runtime_error(wrong);
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        const double low = k == 0 ? -kFar : target.table_y[k];
+        const double high = k + 1 == weights.size() ? kFar : target.table_y[k + 1];
+        if (!target.zones.empty() && target.zones.back().weight == weights[k])
+            target.zones.back().y_high = high;
+        else
+            target.zones.push_back({low, high, weights[k]});
+    }
     return target;
 }
 
@@ -243,6 +336,9 @@ std::vector<std::string> problems(const Target& target) {
     const auto gi_in_range = [&](const char* name, double gi) {
         if (!(gi >= 0 && gi <= 1)) found.push_back(fmt::format("{} = {:g} must lie in 0 .. 1", name, gi));
     };
+    const char* shape = target.shape == TargetShape::table      ? "table"
+                        : target.shape == TargetShape::plateaus ? "plateaus"
+                                                                : "A-B-A";
     switch (target.shape) {
         case TargetShape::linear:
             gi_in_range("from.gi", target.gi0);
@@ -269,23 +365,25 @@ std::vector<std::string> problems(const Target& target) {
             }
             break;
         case TargetShape::table:
+        case TargetShape::plateaus:
+        case TargetShape::aba:
             if (target.table_y.size() != target.table_gi.size()) {
-                found.push_back(fmt::format("table has {} y and {} gi: one gi per y", target.table_y.size(),
-                                            target.table_gi.size()));
+                found.push_back(fmt::format("{} has {} y and {} gi: one gi per y", shape,
+                                            target.table_y.size(), target.table_gi.size()));
             }
             if (target.table_y.size() < 2) {
                 found.push_back(
-                    fmt::format("table has {} point(s), at least 2 are needed", target.table_y.size()));
+                    fmt::format("{} has {} point(s), at least 2 are needed", shape, target.table_y.size()));
             }
             for (std::size_t k = 0; k < target.table_gi.size(); ++k) {
-                gi_in_range(fmt::format("table gi, point {},", k + 1).c_str(), target.table_gi[k]);
+                gi_in_range(fmt::format("{} gi, point {},", shape, k + 1).c_str(), target.table_gi[k]);
             }
             for (std::size_t k = 0; k < target.table_y.size(); ++k) {
                 if (!std::isfinite(target.table_y[k]) ||
                     (k > 0 && !(target.table_y[k] > target.table_y[k - 1]))) {
                     found.push_back(fmt::format(
-                        "table y, point {}, = {:g} mm must be finite and greater than the one before", k + 1,
-                        target.table_y[k] * 1e3));
+                        "{} y, point {}, = {:g} mm must be finite and greater than the one before", shape,
+                        k + 1, target.table_y[k] * 1e3));
                 }
             }
             break;

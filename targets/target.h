@@ -2,11 +2,18 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gradwright {
 
-enum class TargetShape { linear, sigmoid, step, table };
+enum class TargetShape { linear, sigmoid, step, table, plateaus, aba };
+
+/// A stretch of constant GI. The first reaches down to every y and the last up to every y.
+struct Plateau {
+    double gi = 0;            ///< [-] in 0 .. 1
+    double from = 0, to = 0;  ///< [m], from <= to; the first has no use for `from`, the last none for `to`
+};
 
 struct TargetZone {
     double y_low = 0, y_high = 0;  ///< [m], half-open [low, high)
@@ -20,7 +27,7 @@ struct Target {
     double y0 = 0, gi0 = 0, y1 = 0, gi1 = 1;
     // sigmoid: gi0 + (gi1-gi0)/(1+exp(-(y-centre)/s)), s = width_10_90 / (2 ln 9)
     double centre = 0, width_10_90 = 0;
-    // table: piecewise linear, constant beyond its ends
+    // table, plateaus, aba: piecewise linear, constant beyond its ends
     std::vector<double> table_y, table_gi;
     std::string table_file;         ///< as given, for the report
     std::vector<TargetZone> zones;  ///< later zones win; outside all zones weight 1
@@ -29,14 +36,25 @@ struct Target {
     /// Mean of g over [low, high): what a bin of that width can show [-].
     double bin_mean(double y_low, double y_high) const;
     double weight(double y) const;
+    /// Smallest and largest GI of the shape [-].
+    std::pair<double, double> gi_range() const;
     std::string describe() const;  ///< one line for people, lengths in mm
 };
 
 Target linear_target(double y0, double gi0, double y1, double gi1);
 Target sigmoid_target(double centre, double width_10_90, double gi_low = 0, double gi_high = 1);
 Target step_target(double y, double gi_low = 0, double gi_high = 1);
-/// CSV with two columns y [m, or with unit named in the header as y_mm / y_um / y_m] and gi. Throws
-/// std::runtime_error naming file, line and rule.
+/// Any number >= 2 of plateaus in the order of y, joined by straight ramps.
+Target plateaus_target(const std::vector<Plateau>& levels);
+/// A-B-A (gi_outer 1, gi_inner 0) or B-A-B: outer GI up to `in_from`, inner GI from `in_to` to `out_from`,
+/// outer GI again from `out_to` on, straight ramps between [m].
+Target aba_target(double gi_outer, double gi_inner, double in_from, double in_to, double out_from,
+                  double out_to);
+/// CSV with the columns y [m, or with unit named in the header as y_mm / y_um / y_m], gi and, where wanted,
+/// weight (>= 0; 0 = don't care). A weight holds from its y to the next line's, the first also below and the
+/// last also beyond: a step function, because a measured line says where it may be trusted, not how trust
+/// fades. Weights become zones, neighbours of one weight a single one. Throws std::runtime_error naming file,
+/// line and rule of every fault.
 Target table_target(const std::string& csv_file);
 std::vector<std::string> problems(const Target& target);  ///< all at once; empty when sound
 

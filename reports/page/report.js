@@ -93,7 +93,7 @@
       (() => { const box = h("div", { class: "plot" }); drawn.push({ box, draw: (w) => dispenser(w), title: "Plan view of the dispenser with the partition", width: 0 }); return box; })(),
       h("p", { class: "note", style: "margin:.5rem 0" }, "Plan view of the dispenser. A is the powder on the left of the partition, seen from P1 on. Drawing to scale: ", h("a", { href: "partition.svg" }, "partition.svg"), "."),
       table(["corner", R("x mm"), R("y mm"), R("length mm"), R("angle °")],
-        data.build.map((p) => [`P${p.number}`, p.x_mm.toFixed(3), p.y_mm.toFixed(3), known(p.length_mm) ? p.length_mm.toFixed(3) : "", known(p.angle_deg) ? p.angle_deg.toFixed(2) : ""]))),
+        data.build.map((p) => [p.name ?? `P${p.number}`, p.x_mm.toFixed(3), p.y_mm.toFixed(3), known(p.length_mm) ? p.length_mm.toFixed(3) : "", known(p.angle_deg) ? p.angle_deg.toFixed(2) : ""]))),
     h("div", { class: "w5 stack" },
       h("div", { class: "card" }, h("h3", {}, "What to fill"),
         h("ul", { class: "plain" }, words.fill.map((line, i) => h("li", {}, h("span", { class: "key " + "AB"[i] }), line)), h("li", {}, words.dose))),
@@ -113,11 +113,14 @@
 
   // ---- plan view -----------------------------------------------------------------------------------------------------
   const point = (p) => ({ x: p[0] * 1e3, y: p[1] * 1e3 });
+  const second = plan.curve2 ?? [];  // data of earlier versions has one curve
   function dispenser(width) {
     const L = plan.dispenser_length_m * 1e3, W = plan.width_m * 1e3, left = 44, right = 14, top = 44, bottom = 40;
     const scale = (width - left - right) / L, height = Math.min(520, Math.max(90, scale * W)) + top + bottom;
     const outline = (points, fill) => points.length ? Plot.line(points.map(point), { x: "x", y: "y", fill, fillOpacity: 0.26, stroke: "none", curve: "linear-closed" }) : null;
-    const curve = plan.curve.map(point), corners = curve.map((p, i) => ({ ...p, name: `P${i + 1}` }));
+    const named = (points, letter) => points.map(point).map((p, i, all) => ({ ...p, name: `${letter}${i + 1}`, first: i === 0, last: i === all.length - 1 }));
+    const corners = [...named(plan.curve, "P"), ...named(second, "Q")];
+    const step = corners.length > 24 ? Math.ceil(corners.length / 12) : 1, shown = corners.filter((c, i) => i % step === 0 || c.last);
     return Plot.plot({
       width, height, marginLeft: left, marginRight: right, marginTop: top, marginBottom: bottom, style,
       x: { domain: [0, L], label: "x, spreading direction (mm)", ticks: Math.max(3, width / 90) }, y: { domain: [0, W], label: "y, across (mm)", ticks: 5 },
@@ -125,11 +128,12 @@
         outline(plan.outline_a, blue), outline(plan.outline_b, orange),
         Plot.rect([0], { x1: 0, x2: L, y1: 0, y2: W, fill: "none", stroke: "#111", strokeWidth: 1.5 }),
         plan.straight.length ? Plot.line(plan.straight.map(point), { x: "x", y: "y", stroke: "#777", strokeDasharray: "3 4" }) : null,
-        Plot.line(curve, { x: "x", y: "y", stroke: "#111", strokeWidth: 2.6, strokeLinejoin: "round" }),
-        Plot.dot(corners, { x: "x", y: "y", r: 4, fill: "#fff", stroke: "#111", strokeWidth: 1.5 }),
-        ...corners.map((c, i) => Plot.text([c], { x: "x", y: "y", text: "name", dy: -12, dx: i === 0 && c.x < 0.04 * L ? 12 : i === corners.length - 1 && c.x > 0.96 * L ? -12 : 0, fontWeight: 650, fill: "#111", stroke: "#fff", strokeWidth: 4 })),
+        ...[plan.curve, second].map((c) => Plot.line(c.map(point), { x: "x", y: "y", stroke: "#111", strokeWidth: 2.6, strokeLinejoin: "round" })),
+        Plot.dot(shown, { x: "x", y: "y", r: 4, fill: "#fff", stroke: "#111", strokeWidth: 1.5 }),
+        ...shown.map((c) => Plot.text([c], { x: "x", y: "y", text: "name", dy: -12, dx: (c.first || c.last) && c.x < 0.04 * L ? 12 : (c.first || c.last) && c.x > 0.96 * L ? -12 : 0, fontWeight: 650, fill: "#111", stroke: "#fff", strokeWidth: 4 })),
         ...["a", "b"].map((s) => plan["outline_" + s].length ? Plot.text([point(plan["centre_" + s])], { x: "x", y: "y", text: () => s.toUpperCase(), fontSize: 26, fontWeight: 700, fill: s === "a" ? blue : "#8f6200" }) : null),
         ...["a", "b"].map((s) => plan["outline_" + s].length ? Plot.text([point(plan["centre_" + s])], { x: "x", y: "y", text: () => data.materials[s.toUpperCase()], dy: 20, fill: "#333" }) : null),
+        ...(plan.more_centres ?? []).map((c) => Plot.text([point(c.at)], { x: "x", y: "y", text: () => c.side.toUpperCase(), fontSize: 26, fontWeight: 700, fill: c.side === "a" ? blue : "#8f6200" })),
         Plot.arrow([0], { x1: L * 0.25, x2: L * 0.75, y1: W, y2: W, dy: -17, headLength: 9, strokeWidth: 2, stroke: "#111", insetEnd: 0 }),
         Plot.text([0], { x: L / 2, y: W, dy: -29, text: () => "spreading direction", fill: "#111" }),
       ],
@@ -149,8 +153,8 @@
       x: { domain: [0, end], label: "x (mm)", ticks: Math.max(4, width / 100) }, y: { domain: [0, W], label: "y (mm)", ticks: 3 }, color: gi_scale,
       marks: [
         outline(plan.outline_a, blue), outline(plan.outline_b, orange),
-        Plot.line(plan.curve.map(point), { x: "x", y: "y", stroke: "#fff", strokeWidth: 3 }),
-        Plot.line(plan.curve.map(point), { x: "x", y: "y", stroke: "#111", strokeWidth: 1.4 }),
+        ...[plan.curve, second].map((c) => Plot.line(c.map(point), { x: "x", y: "y", stroke: "#fff", strokeWidth: 3 })),
+        ...[plan.curve, second].map((c) => Plot.line(c.map(point), { x: "x", y: "y", stroke: "#111", strokeWidth: 1.4 })),
         Plot.rect([0], { x1: L, x2: x0, y1: 0, y2: W, fill: "#dfe3e8" }),
         Plot.arrow([0], { x1: L + land * 0.15, x2: L + land * 0.85, y1: W / 2, y2: W / 2, strokeWidth: 2, stroke: "#57606a", headLength: 9, insetEnd: 0 }),
         Plot.rect([0], { x1: x0, x2: end, y1: 0, y2: W, fill: "#e7eaee" }),

@@ -135,6 +135,8 @@ TEST_F(Program, values_that_an_option_does_not_take_are_usage_errors) {
         {"design", kLinear, "--threads", "0"},
         {"design", kLinear, "--budget", "-3"},
         {"design", kLinear, "--fidelity", "full"},
+        {"design", kLinear, "--strategy", "mf", "--fidelity", "full"},
+        {"design", kLinear, "--strategy", "ceres", "--fidelity", "ful"},
         {"evaluate", kLinear, "--fidelity", "ful"},
         {"check", kLinear, "--set", "process.layer_thickness"},
         {"check", kLinear, "another.toml"},

@@ -179,5 +179,62 @@ TEST(partition, crossing_touching_and_folding_back_are_found) {
     for (int trial = 0; trial < 200; ++trial) EXPECT_FALSE(random_curve(random).self_intersects());
 }
 
+/// Lower and upper curve, each wavy and monotone in x, A between them or outside.
+PartitionCurve random_pair(Random& random, bool a_between) {
+    PartitionCurve pair;
+    for (const double x : {0.0, 1.0e-3, 2.3e-3, kLength}) {
+        const double y = kWidth * random.uniform();
+        pair.points.push_back({x, y});
+        pair.second.push_back({x, y + 0.1e-3 + 0.5 * kWidth * random.uniform()});
+    }
+    std::reverse(a_between ? pair.second.begin() : pair.points.begin(),
+                 a_between ? pair.second.end() : pair.points.end());
+    return pair;
+}
+
+TEST(partition_pair, sides_are_those_of_a_count_of_heights_and_the_distance_is_the_nearer_curves) {
+    Random random(17);
+    for (int trial = 0; trial < 60; ++trial) {
+        const bool a_between = trial % 2 == 0;
+        const PartitionCurve pair = random_pair(random, a_between);
+        EXPECT_FALSE(pair.pair_disagrees());
+        EXPECT_EQ(pair.a_between(), a_between);
+        const PartitionCurve first{pair.points}, second{pair.second};
+        for (int i = 0; i < 200; ++i) {
+            const double x = kLength * random.uniform(), y = kWidth * (2 * random.uniform() - 0.5);
+            // above the lower and below the upper, each told by its own curve
+            const bool inside = first.on_side_a(x, y) == a_between && second.on_side_a(x, y) == a_between;
+            EXPECT_EQ(pair.on_side_a(x, y), inside == a_between) << x << " " << y;
+            const double distance = std::abs(pair.signed_distance(x, y));
+            EXPECT_TRUE(distance == std::abs(first.signed_distance(x, y)) ||
+                        distance == std::abs(second.signed_distance(x, y)));
+        }
+    }
+}
+
+TEST(partition_pair, area_agrees_with_a_count_of_points) {
+    Random random(23);
+    for (int trial = 0; trial < 6; ++trial) {
+        const PartitionCurve pair = random_pair(random, trial % 2 == 0);
+        int inside = 0;
+        const int points = 20000;
+        for (int i = 0; i < points; ++i)
+            inside += pair.on_side_a(kLength * random.uniform(), kWidth * random.uniform());
+        // four standard errors of the count
+        EXPECT_NEAR(pair.area_a(kLength, kWidth) / (kLength * kWidth), double(inside) / points,
+                    4 * 0.5 / std::sqrt(points));
+    }
+}
+
+TEST(partition_pair, curves_that_meet_or_name_different_sides_are_told) {
+    const std::vector<PlanPoint> lower = {{0, 0.4e-3}, {kLength, 0.6e-3}},
+                                 upper = {{kLength, 1.2e-3}, {0, 1.0e-3}};
+    EXPECT_FALSE((PartitionCurve{lower, upper}.pair_disagrees()));
+    EXPECT_TRUE((PartitionCurve{lower, {upper.rbegin(), upper.rend()}}.pair_disagrees()));
+    EXPECT_TRUE((PartitionCurve{lower, {{kLength, 0.5e-3}, {0, 0.5e-3}}}.pair_disagrees()));
+    EXPECT_TRUE((PartitionCurve{lower, {}}.second_clipped(kLength, kWidth).empty()));
+    EXPECT_EQ((PartitionCurve{lower, upper}.second_clipped(kLength, kWidth).size()), 2u);
+}
+
 }  // namespace
 }  // namespace gradwright

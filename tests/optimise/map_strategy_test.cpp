@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
@@ -119,9 +120,16 @@ TEST(MapStrategy, a_spread_that_differs_from_the_map_is_corrected_until_it_meets
     Heap heap;
     study.scene.powder[1].material.density *= 0.54;
     heap.full_shift = -0.12;  // A and B travel otherwise than the map's powder: about 0.12 in GI
+    heap.light_shift = -0.24;
     const Outcome got = run(study, heap);
     const StudyResult& result = got.result;
     EXPECT_GE(count_stage(result, "correct"), 1);
+    ASSERT_TRUE(result.powder_gate);
+    EXPECT_FALSE(result.powder_gate->passes);
+    EXPECT_GT(result.powder_gate->difference, 0.12);
+    EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
+        return warning.find("move differently") != std::string::npos;
+    }));
     EXPECT_EQ(result.verdict, Verdict::met) << result.message;
     EXPECT_LT(true_rmse(study, truth(heap, study, result.design, true)), study.objective.tolerance);
     // the confirmations of the first design no longer count
@@ -129,6 +137,26 @@ TEST(MapStrategy, a_spread_that_differs_from_the_map_is_corrected_until_it_meets
     for (const Evaluation& confirmation : result.confirmations)
         for (std::size_t k = 0; k < result.design.partition.points.size(); ++k)
             EXPECT_EQ(confirmation.design.partition.points[k].y, result.design.partition.points[k].y);
+}
+
+TEST(MapStrategy, unlike_powders_that_move_alike_pass_the_gate_at_its_rate_and_like_ones_need_none) {
+    int passed = 0;
+    for (int seed = 1; seed <= 20; ++seed) {
+        Study study = coupon();
+        study.seed = seed;
+        study.max_spreads = 4;
+        study.design_space.knots = 2;  // the gate does not hang on the fit's skill
+        study.scene.powder[1].material.density *= 0.54;
+        Heap heap;
+        heap.bed_shift = 0.02;
+        const Outcome got = run(study, heap);
+        ASSERT_TRUE(got.result.powder_gate);
+        EXPECT_EQ(got.calls->map_seeds.size(), 2u);
+        EXPECT_NE(got.calls->map_seeds[0], got.calls->map_seeds[1]);  // a bed of its own
+        passed += got.result.powder_gate->passes;
+    }
+    EXPECT_GE(passed, 16);  // 19 expected; fewer than 16 has a chance of 3e-3
+    EXPECT_FALSE(run(coupon(), Heap{}).result.powder_gate);
 }
 
 TEST(MapStrategy, like_powders_that_differ_from_the_map_put_their_origins_into_it) {
@@ -237,6 +265,36 @@ TEST(MapStrategy, nothing_but_failures_ends_failed_with_the_reason_and_without_n
     EXPECT_EQ(result.termination, "failed");
     EXPECT_NE(result.message.find("nip"), std::string::npos) << result.message;
     for (const HistoryEntry& entry : result.history) EXPECT_TRUE(std::isfinite(entry.objective));
+}
+
+TEST(MapStrategy, resumed_it_asks_for_no_finished_spread_again_and_refuses_to_go_another_way) {
+    std::string folder = (std::filesystem::temp_directory_path() / "gradwright resume XXXXXX").string();
+    ASSERT_NE(mkdtemp(folder.data()), nullptr);
+    Heap heap;
+    heap.fail_full = 1;  // a failed spread would fail again: it is not repeated
+    RunOptions options;
+    options.journal_folder = folder + "/journal";
+    options.spread_folder = folder + "/spreads";
+    const StudyResult first = run(coupon(), heap, options).result;
+    const std::size_t entries = Journal::read(options.journal_folder).size();
+    options.resume = true;
+    const Outcome again = run(coupon(), Heap{}, options);
+    EXPECT_TRUE(again.calls->map_seeds.empty());
+    EXPECT_TRUE(again.calls->full_seeds.empty());
+    EXPECT_EQ(again.result.misfit.value, first.misfit.value);
+    EXPECT_EQ(again.result.spreads_full, first.spreads_full);
+    EXPECT_EQ(again.result.confirmed.gi, first.confirmed.gi);
+    EXPECT_EQ(Journal::read(options.journal_folder).size(), entries);
+    // died after its first spread: the rest is computed, the journal goes on
+    std::filesystem::remove(Journal::read(options.journal_folder).back().file);
+    for (const auto& file : std::filesystem::directory_iterator(options.spread_folder))
+        if (file.file_size() > 100000) std::filesystem::remove(file);
+    EXPECT_EQ(run(coupon(), Heap{}, options).result.misfit.value, first.misfit.value);
+    EXPECT_EQ(Journal::read(options.journal_folder).size(), entries);
+    Study other = coupon();
+    other.seed += 1;
+    EXPECT_THROW(run(other, Heap{}, options), OtherWay);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(MapStrategy, a_stop_keeps_what_there_is) {

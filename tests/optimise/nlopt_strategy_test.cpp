@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 
-#include "optimise/bounded_search.h"
+#include "optimise/strategies.h"
 #include "tests/optimise/synthetic_heap.h"
 
 namespace gradwright {
@@ -35,12 +34,13 @@ class Quadratic : public Evaluator {
     Fidelity fidelity() const override { return Fidelity::map; }
 };
 
-EvaluatorSearch search(Quadratic& quadratic, int budget) {
+EvaluatorSearch search(Quadratic& quadratic, int budget, SearchMethod method = SearchMethod::bobyqa) {
     Study study = coupon();
     study.design_space.knots = 3;
     study.design_space.monotone = false;
     const PartitionFamily family(study.design_space, 3.2e-3, 1.6e-3, {});
-    return search_with(quadratic, study, family, start_design(study), {0.5, 0.5, 0.5, 0}, 7, budget, {}, {});
+    const SearchSpace space(study, family, start_design(study), {0.5, 0.5, 0.5, 0});
+    return search_with(method, {quadratic, space, 7, budget, {}, {}});
 }
 
 TEST(Bobyqa, finds_the_known_minimum_of_a_quadratic_evaluator) {
@@ -62,74 +62,30 @@ TEST(Bobyqa, a_minimum_outside_is_found_on_the_bound_and_never_beyond) {
     EXPECT_FALSE(quadratic.out_of_bounds);
 }
 
-TEST(Bobyqa, keeps_its_budget_and_its_own_best) {
+class EveryMethodOverAnEvaluator : public testing::TestWithParam<SearchMethod> {};
+
+TEST_P(EveryMethodOverAnEvaluator, keeps_its_budget_its_own_best_and_one_seed) {
     Quadratic quadratic;
     quadratic.target = {1.2e-3, 0.9e-3, 0.3e-3};
-    const EvaluatorSearch found = search(quadratic, 12);
-    EXPECT_LE(quadratic.calls, 12);
-    EXPECT_EQ(found.termination, "budget");
-    EXPECT_TRUE(found.best.health.ok());
+    const EvaluatorSearch found = search(quadratic, 12, GetParam());
+    EXPECT_EQ(quadratic.calls, 12);
+    EXPECT_EQ(found.evaluations, 12);
+    EXPECT_EQ(found.termination, "budget") << found.native;
+    EXPECT_LE(found.best.objective, 0.42 + 1e-12);  // start: 0.16 + 0.01 + 0.25
+    EXPECT_EQ(found.best.seed, 7u);
 }
 
-TEST(Bobyqa, evaluations_without_numbers_are_passed_over) {
+TEST_P(EveryMethodOverAnEvaluator, evaluations_without_numbers_are_passed_over) {
     Quadratic quadratic;
     quadratic.target = {1.2e-3, 0.9e-3, 0.3e-3};
     quadratic.fail_every = 9;
-    const EvaluatorSearch found = search(quadratic, 200);
+    const EvaluatorSearch found = search(quadratic, 400, GetParam());
     EXPECT_TRUE(found.best.health.ok());
-    EXPECT_LT(found.best.objective, 0.3);  // start: 0.16 + 0.01 + 0.25 = 0.42
+    EXPECT_LT(found.best.objective, 0.3);  // 0.42 at the start
 }
 
-TEST(BoundedSearch, an_exception_of_the_objective_arrives_with_its_text) {
-    BoundedSearch box;
-    box.low = {0, 0};
-    box.high = {1, 1};
-    box.start = {0.5, 0.5};
-    box.step = {0.1, 0.1};
-    int calls = 0;
-    try {
-        minimise(
-            [&](const std::vector<double>&) -> double {
-                if (++calls == 4) throw std::runtime_error("disk full");
-                return calls;
-            },
-            box);
-        FAIL() << "swallowed";
-    } catch (const std::runtime_error& problem) {
-        EXPECT_STREQ(problem.what(), "disk full");
-    }
-    EXPECT_EQ(calls, 4);
-}
-
-TEST(BoundedSearch, one_free_variable_is_searched_and_fixed_ones_stay) {
-    BoundedSearch box;
-    box.low = {0, 0.25};
-    box.high = {1, 0.25};
-    box.start = {0.9, 0.25};
-    box.step = {0.1, 0.1};
-    const auto found = minimise(
-        [](const std::vector<double>& x) {
-            EXPECT_EQ(x[1], 0.25);
-            return (x[0] - 0.3) * (x[0] - 0.3);
-        },
-        box);
-    EXPECT_NEAR(found.best[0], 0.3, 1e-3);
-    EXPECT_EQ(found.termination, "converged");
-}
-
-TEST(BoundedSearch, a_stop_ends_it_with_the_best_so_far) {
-    BoundedSearch box;
-    box.low = {0, 0};
-    box.high = {1, 1};
-    box.start = {0.5, 0.5};
-    box.step = {0.1, 0.1};
-    int calls = 0;
-    box.stop = [&] { return calls >= 5; };
-    const auto found = minimise([&](const std::vector<double>& x) { return ++calls, x[0] + x[1]; }, box);
-    EXPECT_EQ(found.termination, "interrupted");
-    EXPECT_EQ(calls, 5);
-    EXPECT_LE(found.value, 1);
-}
+INSTANTIATE_TEST_SUITE_P(Nlopt, EveryMethodOverAnEvaluator, testing::ValuesIn(kSearchMethods),
+                         [](const auto& method) { return std::string(to_string(method.param)); });
 
 TEST(BobyqaStrategy, over_the_map_meets_the_ramp_with_one_map_spread) {
     auto calls = std::make_shared<Calls>();
@@ -137,7 +93,7 @@ TEST(BobyqaStrategy, over_the_map_meets_the_ramp_with_one_map_spread) {
     const Heap heap;
     options.spread = engine(heap, calls);
     const Study study = coupon();
-    const StudyResult result = run_bobyqa_strategy(study, Fidelity::map, 150, options);
+    const StudyResult result = run_strategy(study, {"bobyqa", Fidelity::map, 150}, options);
     EXPECT_EQ(result.verdict, Verdict::met) << result.message;
     EXPECT_EQ(result.spreads_map, 1);
     EXPECT_LT(true_rmse(study, truth(heap, study, result.design, true)), 0.04);
@@ -150,7 +106,7 @@ TEST(BobyqaStrategy, over_full_spreads_confirms_on_a_seed_that_the_search_never_
     options.spread = engine({}, calls);
     Study study = coupon();
     study.max_spreads = 16;
-    const StudyResult result = run_bobyqa_strategy(study, Fidelity::full, 14, options);
+    const StudyResult result = run_strategy(study, {"bobyqa", Fidelity::full, 14}, options);
     EXPECT_LE(result.spreads_full, 16);
     EXPECT_EQ(result.spreads_map, 0);
     ASSERT_FALSE(result.confirmations.empty());
@@ -168,7 +124,7 @@ TEST(BobyqaStrategy, over_the_kinematic_picture_needs_no_spread_but_the_confirma
     heap.turn = 0;
     options.spread = engine(heap, calls);
     Study study = coupon();
-    const StudyResult result = run_bobyqa_strategy(study, Fidelity::kinematic, 60, options);
+    const StudyResult result = run_strategy(study, {"bobyqa", Fidelity::kinematic, 60}, options);
     EXPECT_EQ(result.spreads_map, 0);
     EXPECT_EQ(result.verdict, Verdict::met) << result.message;
     EXPECT_TRUE(calls->map_seeds.empty());
@@ -180,7 +136,7 @@ TEST(BobyqaStrategy, all_failures_end_failed_with_the_reason) {
     Heap heap;
     heap.fail_map = true;
     options.spread = engine(heap, calls);
-    const StudyResult result = run_bobyqa_strategy(coupon(), Fidelity::map, 5, options);
+    const StudyResult result = run_strategy(coupon(), {"bobyqa", Fidelity::map, 5}, options);
     EXPECT_EQ(result.termination, "failed");
     EXPECT_NE(result.message.find("nip"), std::string::npos) << result.message;
 }

@@ -351,6 +351,57 @@ TEST(study_target, zones_and_shapes_arrive_as_written) {
     EXPECT_NEAR(study.target(0.8e-3), 0.5, 1e-12);
 }
 
+/// The shortest study with another target.
+std::string with_target(const std::string& target) {
+    return kShort.substr(0, kShort.find("shape")) + target;
+}
+
+TEST(study_target, plateaus_and_a_b_a_arrive_as_written) {
+    const Study plateaus = parse_study(
+        with_target(
+            "shape = \"plateaus\"\nlevels = [{ gi = 0.1, to = \"0.4 mm\" },\n  { gi = 0.5, from = \"0.7 "
+            "mm\", to = \"0.9 mm\" },\n  { gi = 0.9, from = \"1.2 mm\" }]\n"),
+        "levels.toml");
+    EXPECT_NEAR(plateaus.target(0.2e-3), 0.1, 1e-12);
+    EXPECT_NEAR(plateaus.target(0.55e-3), 0.3, 1e-12);
+    EXPECT_NEAR(plateaus.target(0.8e-3), 0.5, 1e-12);
+    EXPECT_NEAR(plateaus.target(1.5e-3), 0.9, 1e-12);
+    EXPECT_EQ(input(plateaus, "target.levels[1].from")->value, "0.7 mm");
+    const std::string ramps =
+        "ramp_in = { from = \"0.3 mm\", to = \"0.5 mm\" }\nramp_out = { from = \"1.1 mm\", to = \"1.3 mm\" "
+        "}\n";
+    const Study band = parse_study(with_target("shape = \"aba\"\n" + ramps), "aba.toml");
+    EXPECT_EQ(band.target(0), 1);
+    EXPECT_EQ(band.target(0.8e-3), 0);
+    EXPECT_THAT(band.warnings, IsEmpty());  // its ends are equal, but it is not flat
+    EXPECT_EQ(origin(band, "target.gi_outer"), "default");
+    EXPECT_EQ(
+        parse_study(with_target("shape = \"aba\"\ngi_outer = 0.2\ngi_inner = 0.7\n" + ramps), "bab.toml")
+            .target(0.8e-3),
+        0.7);
+    const std::string same =
+        "shape = \"plateaus\"\nlevels = [{ gi = 0.5, to = \"0.4 mm\" }, { gi = 0.5, from = \"1 "
+        "mm\" }]\n";
+    EXPECT_THAT(parse_study(with_target(same), "flat.toml").warnings,
+                Contains(HasSubstr("the same everywhere")));
+}
+
+TEST(study_target, weights_of_a_table_reach_the_bins_and_zones_win) {
+    const fs::path folder = testing::TempDir();
+    std::ofstream(folder / "line.csv") << "y_mm,gi,weight\n0,0,1\n0.8,0.5,0\n1.2,1,3\n";
+    const std::string target = with_target("shape = \"table\"\nfile = \"line.csv\"\n");
+    const std::string name = (folder / "table.toml").string();
+    const Study study = parse_study(target, name);
+    EXPECT_EQ(study.target.weight(0.5e-3), 1);
+    EXPECT_EQ(study.target.weight(1e-3), 0);
+    EXPECT_EQ(study.target.weight(1.5e-3), 3);
+    const Study zoned =
+        parse_study(target + "zones = [{ from = \"1 mm\", to = \"1.4 mm\", weight = 2 }]\n", name);
+    EXPECT_EQ(zoned.target.weight(0.9e-3), 0);
+    EXPECT_EQ(zoned.target.weight(1.3e-3), 2);
+    EXPECT_EQ(zoned.target.weight(1.5e-3), 3);
+}
+
 TEST(study_target, beside_walls_two_d90_are_not_judged) {
     const Study study = parsed("[process]\nsides = \"frictional\"\n");
     EXPECT_DOUBLE_EQ(study.footprint.y_low, 2 * 62e-6);

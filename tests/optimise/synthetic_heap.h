@@ -18,17 +18,21 @@ struct Heap {
     double centre = 0.55, turn = -0.05, mixing = 0.2;
     double sigma_y = 40e-6;
     double grains_per_m2 = 3000 / (3.2e-3 * 0.4e-3);
-    double full_shift = 0;  ///< the labelled spread's physics: centre moved by this
-    double bed_shift = 0;   ///< sd of what all grains of one bed share: a shift of the centre
-    double land_turn = 0;   ///< turn changes by this per m of land beyond 3.2 mm
-    int fail_full = 0;      ///< this many of the first labelled spreads end "jammed"
+    double full_shift = 0;   ///< the labelled spread's physics: centre moved by this
+    double light_shift = 0;  ///< a strip all of a powder lighter than 6000 kg/m3: centre moved by this
+    double bed_shift = 0;    ///< sd of what all grains of one bed share: a shift of the centre
+    double land_turn = 0;    ///< turn changes by this per m of land beyond 3.2 mm
+    int fail_full = 0;       ///< this many of the first labelled spreads end "jammed"
     bool fail_map = false;
     double capture = 0.6;
 
     double mean(const Scene& scene, double deposit_x, bool labelled) const {
         const double turning = turn + land_turn * (scene.land - 3.2e-3);
-        return scene.dispenser_length *
-               (centre + (labelled ? full_shift : 0) + turning * (deposit_x / scene.platform_length - 0.5));
+        return scene.dispenser_length * (centre +
+                                         (labelled                                  ? full_shift
+                                          : scene.powder[0].material.density < 6000 ? light_shift
+                                                                                    : 0) +
+                                         turning * (deposit_x / scene.platform_length - 0.5));
     }
 };
 

@@ -124,5 +124,80 @@ TEST(PartitionRows, segments_carry_length_and_angle_and_the_last_has_none) {
     EXPECT_TRUE(std::isnan(rows[2].length_mm));
 }
 
+/// B, a band of A, B; both curves leave through the ends.
+PartitionCurve band(bool a_between) {
+    PartitionCurve pair{{{0, 0.4e-3}, {3.2e-3, 0.6e-3}}, {{3.2e-3, 1.2e-3}, {0, 1.0e-3}}};
+    if (!a_between) {
+        std::reverse(pair.points.begin(), pair.points.end());
+        std::reverse(pair.second.begin(), pair.second.end());
+    }
+    return pair;
+}
+
+TEST(PartitionDrawing, outlines_of_two_curves_have_the_chambers_areas) {
+    const double length = 3.2e-3, width = 1.6e-3;
+    for (const bool a_between : {true, false}) {
+        const auto outlines = chamber_outlines(band(a_between), length, width);
+        const double inner = 0.6e-3 * length;
+        EXPECT_NEAR(area(outlines[a_between ? 0 : 1]), inner, 1e-12);
+        EXPECT_NEAR(area(outlines[a_between ? 1 : 0]), length * width - inner, 1e-12);
+        // one curve beyond the wall: the other divides the dispenser alone
+        PartitionCurve one = band(a_between);
+        for (PlanPoint& point : one.second) point.y += width;
+        EXPECT_NEAR(area(chamber_outlines(one, length, width)[a_between ? 0 : 1]), 1.1e-3 * length, 1e-12);
+    }
+}
+
+TEST(PartitionDrawing, two_curves_have_three_letters_each_in_its_own_chamber) {
+    for (const bool a_between : {true, false}) {
+        const PartitionCurve pair = band(a_between);
+        const auto letters = chamber_letters(pair, 3.2e-3, 1.6e-3);
+        ASSERT_EQ(letters.size(), 3u);
+        for (const ChamberLetter& letter : letters)
+            EXPECT_EQ(pair.on_side_a(letter.at.x, letter.at.y), letter.side == 0);
+        EXPECT_EQ(letters[2].side, a_between ? 1u : 0u);
+        const double apart = letters[2].at.y - letters[letters[2].side].at.y;
+        EXPECT_GT(std::abs(apart), 0.6e-3);  // beyond the band, not beside the other letter
+    }
+}
+
+TEST(PartitionFile, two_curves_come_with_both_their_points_and_ends) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    result.design.family = Family::two_curves;
+    result.design.partition = band(true);
+    const auto object = partition_json(study, result);
+    EXPECT_EQ(object["points_m"].size(), 2u);
+    EXPECT_EQ(object["points2_m"].size(), 2u);
+    EXPECT_EQ(object["corners"][2]["name"], "Q1");
+    EXPECT_NEAR(object["ends2"]["last"]["offset_mm"].get<double>(), 1.0, 1e-9);
+    EXPECT_NEAR(object["sides"]["A"]["area_m2"].get<double>(), 0.6e-3 * 3.2e-3, 1e-12);
+    EXPECT_EQ(object["partition"]["family"], "two_curves");
+    EXPECT_EQ(object["partition"]["between"], "A");
+    const std::string svg = partition_svg(study, result);
+    expect_well_formed(svg);
+    EXPECT_THAT(svg, HasSubstr(">Q2<"));
+    EXPECT_THAT(svg, HasSubstr("A between them"));
+}
+
+TEST(PartitionDrawing, a_smooth_curve_is_drawn_whole_and_dimensioned_at_a_dozen_corners) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    result.design.family = Family::sigmoid;
+    result.design.partition.points.clear();
+    for (int i = 0; i <= 30; ++i)
+        result.design.partition.points.push_back({3.2e-3 * i / 30, 0.8e-3 + 0.01e-3 * i});
+    const std::string svg = partition_svg(study, result);
+    expect_well_formed(svg);
+    std::size_t corners = 0;
+    for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1))
+        ++corners;
+    EXPECT_LE(corners, 16u);  // two of the datum
+    EXPECT_GE(corners, 10u);
+    EXPECT_THAT(svg, HasSubstr("Smooth"));
+    const auto rows = partition_rows(study, result.design);
+    EXPECT_EQ(rows.size(), 31u);
+}
+
 }  // namespace
 }  // namespace gradwright

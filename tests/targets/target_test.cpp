@@ -19,6 +19,10 @@ Target table_of(std::vector<double> y, std::vector<double> gi) {
     return target;
 }
 
+Target three_levels() {
+    return plateaus_target({{0.1, 0, 0.4e-3}, {0.5, 0.7e-3, 0.9e-3}, {0.9, 1.25e-3, 0}});
+}
+
 /// Midpoint sum: what a bin mean is by definition.
 double numeric_mean(const Target& target, double low, double high) {
     const int n = 20000;
@@ -79,9 +83,13 @@ TEST(target, step_belongs_to_its_upper_side) {
 }
 
 TEST(target, bin_means_are_the_integrals_of_the_shape) {
-    const std::vector<Target> targets = {linear_target(0.4e-3, 0, 1.2e-3, 1), sigmoid_target(0.9e-3, 0.6e-3),
-                                         sigmoid_target(0.9e-3, 1e-6, 0.1, 0.8), step_target(0.83e-3),
-                                         table_of({0.1e-3, 0.35e-3, 0.5e-3, 1.3e-3}, {0.2, 0.9, 0.3, 1.0})};
+    const std::vector<Target> targets = {linear_target(0.4e-3, 0, 1.2e-3, 1),
+                                         sigmoid_target(0.9e-3, 0.6e-3),
+                                         sigmoid_target(0.9e-3, 1e-6, 0.1, 0.8),
+                                         step_target(0.83e-3),
+                                         table_of({0.1e-3, 0.35e-3, 0.5e-3, 1.3e-3}, {0.2, 0.9, 0.3, 1.0}),
+                                         three_levels(),
+                                         aba_target(0.9, 0.2, 0.31e-3, 0.5e-3, 1.1e-3, 1.27e-3)};
     for (const Target& target : targets) {
         for (int bin = 0; bin < 8; ++bin) {
             const double low = bin * 0.2e-3, high = (bin + 1) * 0.2e-3;
@@ -91,6 +99,73 @@ TEST(target, bin_means_are_the_integrals_of_the_shape) {
     }
     // 1.5 bins over the foot of a ramp of slope 1250 /m: 0.1 mm of it carry the mean 0.0625
     EXPECT_NEAR(linear_target(0.4e-3, 0, 1.2e-3, 1).bin_mean(0.3e-3, 0.5e-3), 0.5 * 0.0625, 1e-12);
+}
+
+TEST(target, plateaus_hold_their_levels_and_are_joined_by_straight_ramps) {
+    const Target target = three_levels();
+    for (const double y : {-1.0, 0.0, 0.4e-3}) EXPECT_DOUBLE_EQ(target(y), 0.1) << y;
+    for (const double y : {0.7e-3, 0.8e-3, 0.9e-3}) EXPECT_DOUBLE_EQ(target(y), 0.5) << y;
+    for (const double y : {1.25e-3, 1.6e-3, 1.0}) EXPECT_DOUBLE_EQ(target(y), 0.9) << y;
+    EXPECT_NEAR(target(0.5e-3), 0.1 + 0.4 * (0.1 / 0.3), 1e-12);
+    EXPECT_NEAR(target(1.0e-3), 0.5 + 0.4 * (0.1 / 0.35), 1e-12);
+    // a bin of 0.2 mm with 0.1 mm of the first level and 0.1 mm of a ramp of slope 0.4/0.3 mm
+    EXPECT_NEAR(target.bin_mean(0.3e-3, 0.5e-3), 0.1 + 0.5 * 0.5 * 0.4 * (0.1 / 0.3), 1e-12);
+    EXPECT_TRUE(problems(target).empty());
+    EXPECT_EQ(
+        target.describe(),
+        "plateaus: GI 0.1 up to y = 0.4 mm, 0.5 from 0.7 to 0.9 mm, 0.9 from 1.25 mm on, straight between");
+    // any number of levels, falling ones and a peak of no length among them
+    const Target peak =
+        plateaus_target({{0, 0, 0.2e-3}, {1, 0.5e-3, 0.5e-3}, {0.3, 0.8e-3, 1e-3}, {0, 1.2e-3, 0}});
+    EXPECT_TRUE(problems(peak).empty());
+    EXPECT_DOUBLE_EQ(peak(0.5e-3), 1);
+    EXPECT_NEAR(peak(0.35e-3), 0.5, 1e-12);
+    EXPECT_NEAR(peak(1.1e-3), 0.15, 1e-12);
+    EXPECT_EQ(peak.gi_range(), std::pair(0.0, 1.0));
+}
+
+TEST(target, aba_is_a_band_of_one_powder_between_the_other) {
+    const Target band = aba_target(1, 0, 0.3e-3, 0.5e-3, 1.1e-3, 1.3e-3);
+    EXPECT_DOUBLE_EQ(band(0), 1);
+    EXPECT_NEAR(band(0.4e-3), 0.5, 1e-12);
+    EXPECT_DOUBLE_EQ(band(0.8e-3), 0);
+    EXPECT_NEAR(band(1.2e-3), 0.5, 1e-12);
+    EXPECT_DOUBLE_EQ(band(2e-3), 1);
+    EXPECT_NEAR(band.bin_mean(0.2e-3, 0.4e-3), 0.5 * 1 + 0.5 * 0.75, 1e-12);
+    EXPECT_EQ(band.describe().find("A-B-A: GI 1 up to y = 0.3 mm, 0 from 0.5 to 1.1 mm, 1 from 1.3 mm on"),
+              0u);
+    EXPECT_EQ(aba_target(0, 1, 0.3e-3, 0.5e-3, 1.1e-3, 1.3e-3).describe().find("B-A-B"), 0u);
+    EXPECT_EQ(problems(aba_target(1, -0.5, 0.3e-3, 0.2e-3, 1.1e-3, 1.3e-3)).size(), 3u);  // two points, one y
+}
+
+TEST(target, a_third_column_weighs_from_its_line_to_the_next_and_beyond_the_ends) {
+    const CsvFile file("weight,y_mm,gi\n2,0.2,0\n0,0.6,0.3\n0,0.8,0.9\n1,1.0,1\n");
+    Target target = table_target(file.path());
+    EXPECT_EQ(target.weight(-1), 2);
+    EXPECT_EQ(target.weight(0.5999e-3), 2);
+    EXPECT_EQ(target.weight(0.6e-3), 0);
+    EXPECT_EQ(target.weight(0.9999e-3), 0);
+    EXPECT_EQ(target.weight(1e-3), 1);
+    EXPECT_EQ(target.weight(1), 1);
+    EXPECT_EQ(target.zones.size(), 3u);  // neighbours of one weight are one zone
+    EXPECT_TRUE(problems(target).empty());
+    EXPECT_NE(
+        target.describe().find("; below 0.6 mm weight 2; 0.6 to 1 mm don't care; from 1 mm on weight 1"),
+        std::string::npos)
+        << target.describe();
+    target.zones.push_back({0.7e-3, 0.8e-3, 5});  // a zone of the study wins
+    EXPECT_EQ(target.weight(0.75e-3), 5);
+    const CsvFile bare("0.0002 , 0 , 3\n0.001,1,0\n");
+    EXPECT_EQ(table_target(bare.path()).weight(0.5e-3), 3);
+}
+
+TEST(target, bad_weights_are_told_with_their_lines) {
+    const std::string message = message_of("y_mm,gi,weight\n0,0,-1\n1,0.5,x\n2,0.7\n3,1,1\n");
+    EXPECT_NE(message.find(":2: weight = '-1' must be a number in 0 .."), std::string::npos) << message;
+    EXPECT_NE(message.find(":3: weight = 'x'"), std::string::npos) << message;
+    EXPECT_NE(message.find(":4: '2,0.7' has 2 column(s), 3 are needed: y, gi, weight"), std::string::npos)
+        << message;
+    EXPECT_NE(message_of("y_mm,gi,weight\n0,0,0\n1,1,0\n").find("every weight is 0"), std::string::npos);
 }
 
 TEST(target, far_tails_of_the_sigmoid_neither_overflow_nor_leave_the_range) {
