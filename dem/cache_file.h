@@ -23,7 +23,7 @@ template <class T>
 void put(std::string& to, const std::vector<T>& values) {
     const std::uint64_t count = values.size();
     to.append(reinterpret_cast<const char*>(&count), sizeof count);
-    to.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
+    if (count > 0) to.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
 }
 
 template <class T>
@@ -34,7 +34,8 @@ bool take(const std::string& from, std::size_t& at, std::vector<T>& values) {
     at += sizeof count;
     if (count > (from.size() - at) / sizeof(T)) return false;
     values.resize(count);
-    std::memcpy(values.data(), from.data() + at, count * sizeof(T));
+    // memcpy from or to nothing is undefined even for no bytes
+    if (count > 0) std::memcpy(values.data(), from.data() + at, count * sizeof(T));
     at += count * sizeof(T);
     return true;
 }

@@ -1,6 +1,10 @@
 // The quoted number: a full-width spread with both powders in the state, each with its own density, stiffness
-// and sizes, on a packing seed of its own. It never reads an origin map: the profile is plain bins of the
-// labels that the grains carried (inverse-design.md).
+// and sizes, on a packing seed of its own. It never reads an origin map (inverse-design.md): the profile comes
+// from the labels that the grains of this spread carried. Powders that move alike between periodic sides move
+// by the same law at every y, so there every laid grain tells of every y, by where it came from
+// (homogeneous_estimator.h): half the noise of bins that count their own grains only. Those bins are kept
+// beside it (`plain_check`), and are what is quoted when they contradict it, or where powders, sides or fills
+// allow no such reading.
 #pragma once
 #include "optimise/journal.h"
 #include "optimise/spread_runner.h"
@@ -19,6 +23,9 @@ class DemEvaluator : public Evaluator {
     const SpreadResult& last() const { return last_; }
 
   private:
+    /// Fills profile, drift and their plain check from a labelled layer.
+    void read_profile(const Layer& layer, Evaluation& evaluation) const;
+
     const Study& study_;
     SpreadRunner& runner_;
     Journal* journal_;

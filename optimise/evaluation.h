@@ -22,9 +22,11 @@ struct Evaluation {
     GradationProfile profile;
     XDrift drift;
     GradationMap map;  ///< full only; map: relabelled
-    GradationProfile
-        plain_check;  ///< map only: plain bins of the same strips tiled over the width; empty otherwise
+    /// Plain bins of the same grains, a map's strips tiled over the width; empty where the profile is plain
+    /// bins itself and nothing else could be read.
+    GradationProfile plain_check;
     XDrift plain_check_drift;            ///< and their drift
+    bool every_grain = false;            ///< full only: every grain told of every y (dem_evaluator.h)
     std::vector<double> target, weight;  ///< per bin
     Misfit misfit, drift_misfit;
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;

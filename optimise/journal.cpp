@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr const char* kAside = ".part";
 
 json number(double value) {
@@ -141,6 +141,7 @@ const auto evaluation_fields = [](auto io, auto& e) {
     io.object("profile", e.profile, profile_fields);
     io.object("plain_check", e.plain_check, profile_fields);
     io.object("plain_check_drift", e.plain_check_drift, drift_fields);
+    io("every_grain", e.every_grain);
     io.object("x_drift", e.drift, drift_fields);
     io.object("map", e.map, map_fields);
     io("target", e.target);

@@ -41,6 +41,12 @@ json drift_profile_json(const XDrift& drift) {
             {"band_factor", number(simultaneous_factor(drift.standard_error, 0.95, drift.degrees))}};
 }
 
+const char* estimator_of(const Evaluation& evaluation) {
+    if (evaluation.fidelity == Fidelity::kinematic) return "closed form";
+    return evaluation.fidelity == Fidelity::map || evaluation.every_grain ? "every grain for every y"
+                                                                          : "bins of their own grains";
+}
+
 json evaluation_summary(const Study& study, const Evaluation& evaluation) {
     const bool defined = evaluation.health.ok() && !evaluation.profile.gi.empty();
     // the kinematic picture lays nothing, and a spread that failed was not measured
@@ -51,7 +57,15 @@ json evaluation_summary(const Study& study, const Evaluation& evaluation) {
         turnover = {{"origin_mean", numbers(evaluation.origin_mean)},
                     {"origin_deviation", numbers(evaluation.origin_deviation)},
                     {"parts", "sixths of the platform; shares of the dispenser's length"}};
+    // what bins of their own grains say, where every grain was asked about every y
+    json plain = nullptr;
+    if (!evaluation.plain_check.gi.empty())
+        plain = {{"gi", numbers(evaluation.plain_check.gi)},
+                 {"standard_error", numbers(evaluation.plain_check.standard_error)},
+                 {"x_drift", drift_profile_json(evaluation.plain_check_drift)}};
     return {{"fidelity", to_string(evaluation.fidelity)},
+            {"estimator", estimator_of(evaluation)},
+            {"plain_bins", plain},
             {"turnover", turnover},
             {"status", evaluation.health.status},
             {"reason", evaluation.health.reason},
@@ -304,10 +318,6 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
                          {"target", target},
                          {"weight", numbers(evaluation.weight)},
                          {"band", "simultaneous 95 % over the bins"}};
-    if (!evaluation.plain_check.gi.empty())  // of a map: what bins of their own grains say
-        object["plain_bins"] = {{"gi", numbers(evaluation.plain_check.gi)},
-                                {"standard_error", numbers(evaluation.plain_check.standard_error)},
-                                {"x_drift", drift_profile_json(evaluation.plain_check_drift)}};
     object["map"] = map;
     if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
     object["x_drift"] = drift;

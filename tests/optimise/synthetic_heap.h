@@ -21,6 +21,8 @@ struct Heap {
     double full_shift = 0;   ///< the labelled spread's physics: centre moved by this
     double light_shift = 0;  ///< a strip all of a powder lighter than 6000 kg/m3: centre moved by this
     double bed_shift = 0;    ///< sd of what all grains of one bed share: a shift of the centre
+    double across = 0;       ///< centre moves by this from one side to the other: transport that depends on y
+    double stray = 0;        ///< share of the labels that are drawn by lot
     double land_turn = 0;    ///< turn changes by this per m of land beyond 3.2 mm
     int fail_full = 0;       ///< this many of the first labelled spreads end "jammed"
     bool fail_map = false;
@@ -69,7 +71,9 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
     for (int i = 0; i < grains; ++i) {
         const double x = scene.platform_length * random.uniform();
         const double y = scene.width * random.uniform();
-        const double mean = heap.mean(scene, x, labelled) + shift, sd = heap.mixing * scene.dispenser_length;
+        const double mean = heap.mean(scene, x, labelled) + shift +
+                            heap.across * scene.dispenser_length * (y / scene.width - 0.5),
+                     sd = heap.mixing * scene.dispenser_length;
         double origin_x = -1;
         while (!(origin_x >= 0 && origin_x < scene.dispenser_length)) origin_x = mean + sd * random.normal();
         const double origin_y = y - heap.sigma_y * random.normal();
@@ -82,7 +86,10 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
         layer.origin_z.push_back(-50e-6);
         layer.volume.push_back(volume);
         layer.radius.push_back(std::cbrt(volume * 0.75 / std::numbers::pi));
-        layer.is_a.push_back(labelled && partition->on_side_a(origin_x, origin_y));
+        const double from = layer.periodic ? origin_y - scene.width * std::floor(origin_y / scene.width) : origin_y;
+        layer.is_a.push_back(labelled && partition->on_side_a(origin_x, from));
+        if (labelled && heap.stray > 0 && random.uniform() < heap.stray)
+            layer.is_a.back() = random.uniform() < 0.5;
         layer.dosed_solid_volume += volume / heap.capture;
     }
     layer.overflow_solid_volume = layer.dosed_solid_volume * (1 - heap.capture);
