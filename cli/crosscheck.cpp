@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/run_options.h"
 #include "optimise/lammps_crosscheck.h"
+#include "optimise/lammps_speed.h"
 #include "reports/json_support.h"
 #include "reports/provenance.h"
 #include "reports/safe_write.h"
@@ -21,7 +22,8 @@ struct CrosscheckCommand {
     std::string engine, study;
     int ranks = 0;  ///< 0 = as many as threads
     int seeds = 3;
-    bool study_law = false, full_width = false, rigid_blade = false;
+    bool study_law = false, full_width = false, rigid_blade = false, speed = false;
+    long steps = 1000;
 };
 
 double mean_of(const CrosscheckEngine& engine, double (*value)(const CrosscheckRun&)) {
@@ -220,6 +222,61 @@ void print_crosscheck(const Study& study, const Crosscheck& result) {
                 fmt::print("  warning, bed {}, {}: {}\n", k + 1, engine->name, warning);
 }
 
+/// Both engines step by step, without a spread: what a core does in a second.
+ExitCode run_speed(const Study& study, const CrosscheckCommand& command, const CommonOptions& common) {
+    CrosscheckOptions scene_options;
+    scene_options.full_width = command.full_width;
+    scene_options.study_law = command.study_law;
+    EngineSpeedOptions options;
+    options.threads = common.threads > 0 ? common.threads : 1;
+    options.ranks = command.ranks > 0 ? command.ranks : options.threads;
+    options.steps = command.steps;
+    find_lammps(options.ranks);
+    options.folder = make_out_folder(common, study.name);
+    ProgressLine progress(common.quiet);
+    const RunOptions run = run_options(common, progress);
+    options.cache_folder = run.cache_folder;
+    options.stop = run.stop;
+    options.progress = run.progress;
+    const EngineSpeed result = run_engine_speed(crosscheck_scene(study, scene_options, study.seed), options);
+    progress.finish();
+    auto cases = nlohmann::json::array();
+    for (const EngineSpeedCase& one : result.cases)
+        cases.push_back({{"name", one.name},
+                         {"grains", one.grains},
+                         {"gradwright_grain_steps_per_second", number(one.ours)},
+                         {"lammps_grain_steps_per_second", number(one.lammps)},
+                         {"lammps_best_skin_m", number(one.best_skin)},
+                         {"lammps_by_skin", numbers(one.lammps_by_skin)},
+                         {"speed_ratio", number(one.ratio)}});
+    const nlohmann::json object = {{"speed", cases},
+                                   {"skins_m", numbers(options.skins)},
+                                   {"steps", options.steps},
+                                   {"threads", options.threads},
+                                   {"ranks", options.ranks},
+                                   {"lammps_version", result.version},
+                                   {"law", command.study_law ? "study" : "common"},
+                                   {"status", result.health.status},
+                                   {"reason", result.health.reason},
+                                   {"provenance", provenance_json()}};
+    const std::string text = json_text(object) + "\n";
+    writing(options.folder, [&] { write_file(options.folder + "/speed.json", text); });
+    if (common.json) {
+        fmt::print("{}", text);
+    } else {
+        fmt::print("{}: every grain awake, {} thread(s) against {} rank(s) of LAMMPS {}\n", study.name,
+                   options.threads, options.ranks, result.version);
+        for (const EngineSpeedCase& one : result.cases)
+            fmt::print(
+                "  {:<8} {} grains: {:.2f} against {:.2f} million grain-steps/s (skin {:.0f} um): {:.2f} "
+                "times\n",
+                one.name, one.grains, one.ours / 1e6, one.lammps / 1e6, one.best_skin * 1e6, one.ratio);
+    }
+    if (!result.health.ok())
+        fmt::print(stderr, "gradwright: ended with '{}': {}\n", result.health.status, result.health.reason);
+    return exit_code_of(result.health);
+}
+
 ExitCode run_crosscheck_command(const CrosscheckCommand& command, const CommonOptions& common) {
     const std::vector<std::string> engines = {"lammps"};
     if (command.engine != "lammps")
@@ -229,6 +286,7 @@ ExitCode run_crosscheck_command(const CrosscheckCommand& command, const CommonOp
                       "gradwright crosscheck lammps STUDY");
     const Study study = load_study(command.study, common);
     refuse_impossible(study, estimate(study, thread_count(common)));
+    if (command.speed) return run_speed(study, command, common);
     CrosscheckOptions options;
     options.seeds = command.seeds;
     options.threads = thread_count(common);
@@ -288,6 +346,12 @@ void add_crosscheck(CLI::App& app, Call& call) {
         "--rigid-blade", command->rigid_blade,
         "LAMMPS's blade as hard as the other walls: it shoots the grains that it pinches; default: so "
         "soft that it does the work of our yielding one");
+    verb->add_flag("--speed", command->speed,
+                   "No spread: both engines step by step on the same bed, settled and flowing, every grain "
+                   "awake; one thread and one rank unless --threads and --ranks say more");
+    verb->add_option("--steps", command->steps, "With --speed: steps that are timed; default 1000")
+        ->type_name("N")
+        ->check(CLI::Range(10L, 1000000L));
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);
     add_run_options(*verb, call.options);

@@ -19,7 +19,7 @@ namespace {
 /// placement jams).
 struct Placement {
     std::vector<double> x, y, z, radius;
-    std::vector<std::uint8_t> material;
+    std::vector<std::uint8_t> material, chamber;
 };
 
 Placement pour(const Scene& scene, const PartitionCurve* partition, double solid_volume, double z_low,
@@ -32,16 +32,20 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
     volume[1] = solid_volume - volume[0];
     struct Grain {
         double radius;
-        std::uint8_t material;
+        std::uint8_t material, chamber;
     };
     std::vector<Grain> grains;
-    for (int k = 0; k < 2; ++k) {
-        const auto& size = scene.powder[k].size;
-        const auto count = static_cast<std::size_t>(std::llround(volume[k] / size.mean_grain_volume()));
-        if (count == 0) continue;
-        for (const double d : size.draw(count, random.next()))
-            grains.push_back({0.5 * d, static_cast<std::uint8_t>(k)});
-    }
+    for (int chamber = 0; chamber < 2; ++chamber)
+        for (int k = 0; k < 2; ++k) {
+            // a bed without labels is of powder A alone
+            const double of_a = partition ? scene.share_a[chamber] : 1;
+            const double wanted = volume[chamber] * (k == 0 ? of_a : 1 - of_a);
+            const auto& size = scene.powder[k].size;
+            const auto count = static_cast<std::size_t>(std::llround(wanted / size.mean_grain_volume()));
+            if (count == 0) continue;
+            for (const double d : size.draw(count, random.next()))
+                grains.push_back({0.5 * d, static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(chamber)});
+        }
     std::stable_sort(grains.begin(), grains.end(),
                      [](const Grain& a, const Grain& b) { return a.radius > b.radius; });
 
@@ -62,7 +66,7 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
             const double pz = z_low + r + random.uniform() * top;
             if (partition) {
                 const double side = partition->signed_distance(px, py);
-                if ((g.material == 0) != (side > 0)) continue;
+                if ((g.chamber == 0) != (side > 0)) continue;
                 if (std::fabs(side) < 0.5 * scene.plate_thickness + r && scene.plate_thickness > 0) continue;
             }
             const int cx = std::min(static_cast<int>(px / length * nx), nx - 1),
@@ -93,6 +97,7 @@ Placement pour(const Scene& scene, const PartitionCurve* partition, double solid
             out.z.push_back(pz);
             out.radius.push_back(r);
             out.material.push_back(g.material);
+            out.chamber.push_back(g.chamber);
             break;
         }
     }
@@ -306,6 +311,7 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     for (const auto& g : rough_surface(0, scene.dispenser_length, scene.width, z_floor, scene.roughness,
                                        scene.seed ^ 0xf100f))
         engine.add_grain(g);
+    const std::size_t first_poured = engine.state().size();  // ids count from 0
     Placement poured = pour(scene, partition, solid, z_floor + 0.4 * scene.roughness, 0.30, random);
     for (std::size_t k = 0; k < poured.x.size(); ++k) {
         GrainSpec g;
@@ -351,7 +357,7 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
 
     auto relabel = [&] {
         // Where both powders share sizes, a grain belongs to the side on which it came to rest; else it keeps
-        // its powder.
+        // its powder. In a premix its powder is drawn anew, by a lot of its own.
         if (!partition || !(scene.powder[0].size == scene.powder[1].size)) return false;
         auto& s = engine.state();
         bool changed = false;
@@ -360,9 +366,14 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
             double y = s.y[i];
             if (scene.sides == Sides::periodic) y -= scene.width * std::floor(y / scene.width);
             const std::uint8_t side = partition->on_side_a(s.x[i], y) ? 0 : 1;
-            if (side == s.material[i]) continue;
+            std::uint8_t& chamber = poured.chamber[static_cast<std::size_t>(s.id[i]) - first_poured];
+            if (side == chamber) continue;
+            chamber = side;
+            Random lot(scene.seed ^ (0x9e3779b97f4a7c15ull * (static_cast<std::uint64_t>(s.id[i]) + 1)));
+            const std::uint8_t powder = lot.uniform() < scene.share_a[side] ? 0 : 1;
+            if (powder == s.material[i]) continue;
             changed = true;
-            engine.set_material(i, side);
+            engine.set_material(i, powder);
         }
         return changed;
     };

@@ -72,6 +72,8 @@ std::string Scene::canonical_text() const {
     number("rolling_model", static_cast<int>(interaction.rolling_model));
     number("rolling_speed", interaction.rolling_regularisation_speed);
     // named only where it departs, so that the beds and maps kept so far are still found
+    if (share_a[0] != 1 || share_a[1] != 0)
+        out += fmt::format("share_a = {:.17g} {:.17g}\n", share_a[0], share_a[1]);
     if (!adhesive_walls) number("adhesive_walls", 0);
     number("softening", softening);
     number("adhesion_scaling", static_cast<int>(adhesion_scaling));

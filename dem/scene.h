@@ -46,6 +46,8 @@ struct Scene {
     Substrate substrate = Substrate::fused;
     double roughness = 40e-6;  ///< diameter of the fixed grains of a fused substrate and of the bed floor [m]
     Sides sides = Sides::periodic;
+    /// Share of powder A, by solid volume, in what is filled into chamber A and B: {1, 0} = pure powders.
+    std::array<double, 2> share_a = {1, 0};
     double plate_thickness = 0;  ///< t of the temporary partition [m]; 0 = ideal
     bool allow_starved = false;  ///< a layer that ends short of the platform's end is a result, not a failure
     // powders; index 0 = A, 1 = B

@@ -171,6 +171,7 @@ FitProblem::FitProblem(const Study& study, const Design& design, std::span<const
       target(bin_targets(study)),
       weight(bin_weights(study)),
       drift_target(study.bins.count, 0.0),
+      fill(chamber_fill(study, design)),
       norm(study.objective.norm),
       x_drift_weight(study.objective.x_drift_weight) {
     const Footprint footprint = footprint_of(study, design);
@@ -189,13 +190,12 @@ int FitProblem::residual_count() const {
 std::pair<double, double> FitProblem::hard_misfit_and_drift(const PartitionFamily& family,
                                                             std::span<const double> p) const {
     std::vector<double> gi, difference;
-    shares<double>(family, p.data(), 0, gi, difference);
-    const bool above = family.orientation().a_above;
+    gradation<double>(family, p.data(), 0, gi, difference);
     std::vector<double> counts(weight.size(), 0.0);
     for (std::size_t b = 0; b < weight.size(); ++b) {
         counts[b] = weight[b] > 0;
-        gi[b] = (above ? gi[b] : 1 - gi[b]) - target[b];
-        if (!difference.empty()) difference[b] = (above ? difference[b] : -difference[b]) - drift_target[b];
+        gi[b] -= target[b];
+        if (!difference.empty()) difference[b] -= drift_target[b];
     }
     const double drift = difference.empty() ? 0 : norm_of(Norm::rmse, difference, counts);
     return {norm_of(norm, gi, weight), drift};

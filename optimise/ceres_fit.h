@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "dem/homogeneous_estimator.h"
+#include "optimise/chamber_fill.h"
 #include "optimise/partition_family.h"
 
 namespace gradwright {
@@ -25,6 +26,7 @@ struct FitProblem {
     Thirds thirds;
     BinGrid bins;
     std::vector<double> target, weight, drift_target;  ///< per bin [-]
+    ChamberFill fill;                                  ///< makes GI of the shares
     Norm norm = Norm::rmse;     ///< of the choice and the polish; the least squares are always rmse
     double x_drift_weight = 0;  ///< [-], >= 0; 0 leaves the drift to be only reported
 
@@ -38,10 +40,10 @@ struct FitProblem {
     void residuals(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& out) const;
     /// Of those two kinds; a family's bend_count comes on top.
     int residual_count() const;
-    /// Profile and drift of the share above the partition, or between its curves (visit_curves).
+    /// Profile and drift of GI; `difference` is empty when a third holds no grain.
     template <class T>
-    void shares(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
-                std::vector<T>& difference) const;
+    void gradation(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
+                   std::vector<T>& difference) const;
     /// sqrt(m^2 + x_drift_weight d^2 + unsound) with hard labels and the norm asked for [-].
     double hard_objective(const PartitionFamily& family, std::span<const double> p) const;
     /// (m, d) of the above.
@@ -86,8 +88,8 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
                         const FitProblem& problem, const FitOptions& options);
 
 template <class T>
-void FitProblem::shares(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
-                        std::vector<T>& difference) const {
+void FitProblem::gradation(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
+                           std::vector<T>& difference) const {
     gi.clear();
     difference.clear();
     std::vector<T> profile, first, last;
@@ -106,13 +108,21 @@ void FitProblem::shares(const PartitionFamily& family, const T* p, double smooth
         for (std::size_t b = 0; b < last.size(); ++b) last[b] -= first[b];
         add(difference, last, sign);
     });
+    // so far the share above the partition, or between its curves (visit_curves)
+    const bool above = family.orientation().a_above;
+    for (std::size_t b = 0; b < gi.size(); ++b) {
+        const T share = above ? gi[b] : T(1.0 - gi[b]);
+        gi[b] = fill.gi(share);
+        if (!difference.empty())
+            difference[b] = fill.slope(share) * (above ? difference[b] : T(-difference[b]));
+    }
 }
 
 template <class T>
 void FitProblem::residuals(const PartitionFamily& family, const T* p, double smoothing,
                            std::vector<T>& out) const {
     std::vector<T> gi, difference;
-    shares(family, p, smoothing, gi, difference);
+    gradation(family, p, smoothing, gi, difference);
     double sum = 0;
     int counting = 0;
     for (const double w : weight) {
@@ -120,18 +130,15 @@ void FitProblem::residuals(const PartitionFamily& family, const T* p, double smo
         counting += w > 0;
     }
     out.clear();
-    const bool above = family.orientation().a_above;
     for (std::size_t b = 0; b < weight.size(); ++b)
-        if (weight[b] > 0)
-            out.push_back(std::sqrt(weight[b] / sum) * ((above ? gi[b] : T(1.0 - gi[b])) - target[b]));
+        if (weight[b] > 0) out.push_back(std::sqrt(weight[b] / sum) * (gi[b] - target[b]));
     for (std::size_t b = 0; b < weight.size(); ++b) {
         if (!(weight[b] > 0)) continue;
         // A third without grains has no drift to be judged by; coverage tells of it.
         if (difference.empty())
             out.push_back(T(0.0));
         else
-            out.push_back(std::sqrt(x_drift_weight / counting) *
-                          ((above ? difference[b] : T(-difference[b])) - drift_target[b]));
+            out.push_back(std::sqrt(x_drift_weight / counting) * (difference[b] - drift_target[b]));
     }
     family.bend_excess(p, out);
 }

@@ -5,22 +5,24 @@
 #include <cmath>
 
 #include "dem/homogeneous_estimator.h"
+#include "optimise/chamber_fill.h"
 #include "optimise/map_evaluator.h"
 
 namespace gradwright {
 namespace {
 
-constexpr int kResamples = 200;           // bootstrap resamples of a quoted number
+constexpr int kResamples = 200;            // bootstrap resamples of a quoted number
 constexpr double kLabelsMayStray = 0.005;  // share of the laid solid whose label is not its origin's side
 constexpr double kSignificance = 0.01;     // of the test that sends a spread back to its plain bins
 
-/// Share of the laid solid that carries another label than the side of the partition it came from.
-double stray_labels(const Layer& layer, const PartitionCurve& partition) {
+/// Share of the laid solid that carries a powder which its side of the partition does not hold.
+double stray_labels(const Layer& layer, const PartitionCurve& partition, const ChamberFill& fill) {
     const std::vector<double> of_origin = hard_labels(layer, partition);
     double stray = 0, all = 0;
     for (std::size_t i = 0; i < layer.size(); ++i) {
         all += layer.volume[i];
-        if ((of_origin[i] > 0.5) != bool(layer.is_a[i])) stray += layer.volume[i];
+        const double share_a = fill.share_a[of_origin[i] > 0.5 ? 0 : 1];
+        if (!((layer.is_a[i] ? share_a : 1 - share_a) > 0)) stray += layer.volume[i];
     }
     return all > 0 ? stray / all : 1;
 }
@@ -48,9 +50,11 @@ void DemEvaluator::read_profile(const Layer& layer, Evaluation& evaluation) cons
     evaluation.profile = plain_profile(layer, label, footprint, study_.bins, evaluation.seed);
     evaluation.drift = plain_drift(layer, label, footprint, study_.bins, evaluation.seed);
     allow_for_beds(evaluation, kBedsOverBlocksPlain);
-    const bool alike = moves_alike(study_) && layer.periodic &&
-                       design.fill_fraction[0] == design.fill_fraction[1] &&
-                       stray_labels(layer, design.partition) <= kLabelsMayStray;
+    const ChamberFill fill = chamber_fill(study_, design);
+    // a slot that collapses blurs the sides, which a premix would not show
+    const bool alike = moves_alike(study_) && layer.periodic && fill.level() &&
+                       (fill.pure() || study_.scene.plate_thickness == 0) &&
+                       stray_labels(layer, design.partition, fill) <= kLabelsMayStray;
     if (!alike) return;
 
     std::swap(evaluation.plain_check, evaluation.profile);
@@ -62,13 +66,14 @@ void DemEvaluator::read_profile(const Layer& layer, Evaluation& evaluation) cons
     evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
     evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
     allow_for_beds(evaluation, kBedsOverBlocksMap);
+    fill.apply(evaluation.profile, evaluation.drift);
     evaluation.every_grain = true;
     const std::vector<double> weight = bin_weights(study_);
-    const double profile_p =
-        agreement(evaluation.plain_check.gi, evaluation.plain_check.standard_error, evaluation.profile.gi, weight);
-    const double drift_p = agreement(evaluation.plain_check_drift.difference,
-                                     evaluation.plain_check_drift.standard_error,
-                                     evaluation.drift.difference, weight);
+    const double profile_p = agreement(evaluation.plain_check.gi, evaluation.plain_check.standard_error,
+                                       evaluation.profile.gi, weight);
+    const double drift_p =
+        agreement(evaluation.plain_check_drift.difference, evaluation.plain_check_drift.standard_error,
+                  evaluation.drift.difference, weight);
     if (std::min(profile_p, drift_p) >= kSignificance / 2) return;  // two tests
     evaluation.health.warnings.push_back(fmt::format(
         "bins of their own grains contradict what all grains of the spread say (p = {:.2g}, drift {:.2g}): "
@@ -100,9 +105,10 @@ Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
     }
     if (evaluation.health.ok()) {
         read_profile(layer, evaluation);
-        evaluation.map = gradation_map(
-            layer, carried_labels(layer), {study_.scene.powder[0].material.density, study_.scene.powder[1].material.density},
-            study_.bins.width, study_.dispenser_width);
+        evaluation.map =
+            gradation_map(layer, carried_labels(layer),
+                          {study_.scene.powder[0].material.density, study_.scene.powder[1].material.density},
+                          study_.bins.width, study_.dispenser_width);
         evaluation.coverage = coverage(layer, footprint_of(study_, design));
         evaluation.capture_fraction = layer.capture_fraction();
         evaluation.kinematic_error_bound = 1 - evaluation.capture_fraction;

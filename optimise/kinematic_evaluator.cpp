@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "optimise/chamber_fill.h"
+
 namespace gradwright {
 
 double lateral_spread(const Study& study, const Design& design) {
@@ -66,6 +68,7 @@ Evaluation KinematicEvaluator::evaluate(const Design& design, std::uint64_t seed
     evaluation.drift.difference.assign(bins.count, 0.0);
     evaluation.drift.standard_error.assign(bins.count, 0.0);
 
+    chamber_fill(study_, design).apply(profile, evaluation.drift);
     if (capture_fraction_) evaluation.capture_fraction = *capture_fraction_;
     evaluation.kinematic_error_bound = capture_fraction_ ? 1 - *capture_fraction_ : 1;
     judge(study_, evaluation);

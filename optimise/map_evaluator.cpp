@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "dem/homogeneous_estimator.h"
+#include "optimise/chamber_fill.h"
 
 namespace gradwright {
 namespace {
@@ -139,7 +140,9 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
     }
     if (design.fill_fraction[0] != design.fill_fraction[1])
         map.health.warnings.push_back(
-            "the map was spread with level chambers: unequal fills are only in the confirmation");
+            "the map was spread with level chambers: what unequal fills lay is reckoned from it by their "
+            "shares "
+            "of the dose, and the step between the levels is only in the confirmation");
     map.average();
 }
 
@@ -204,6 +207,8 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
         evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
         if (!grains.replicates()) allow_for_beds(evaluation, kBedsOverBlocksMap);
+        const ChamberFill fill = chamber_fill(study_, design);
+        fill.apply(evaluation.profile, evaluation.drift);
         Footprint in_strip = footprint;
         in_strip.y_low = 0;
         for (const Layer& layer : map.layers) {
@@ -223,6 +228,8 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
             evaluation.plain_check_drift = plain_drift(whole, label, footprint, study_.bins, map.seed);
             for (double& s : evaluation.plain_check_drift.standard_error)
                 s *= std::sqrt(kBedsOverBlocksPlain.drift);
+            fill.apply(evaluation.plain_check, evaluation.plain_check_drift);
+            fill.apply(evaluation.map);
         }
     }
     judge(study_, evaluation);

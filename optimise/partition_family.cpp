@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "optimise/chamber_fill.h"
 #include "optimise/evaluation.h"
 
 namespace gradwright {
@@ -353,6 +354,12 @@ bool goes_with(const Study& study, const std::function<double(double)>& along) {
     return sum * sum_yg - sum_y * sum_g >= 0;
 }
 
+/// The chambers as the study starts.
+ChamberFill fill_of(const Study& study) {
+    const auto& start = study.design_space.fill_fraction;
+    return chamber_fill(study, {start[0].value, start[1].value}, study.scene.dose_height);
+}
+
 }  // namespace
 
 bool target_rises(const Study& study) {
@@ -382,8 +389,9 @@ std::vector<PlanPoint> closed_form_curve(const Study& study, Orientation orienta
     const double width = study.dispenser_width;
     const int steps = 800;  // in y: 4 um on a 1.6 mm dispenser, under a tenth of a grain
     const int samples = 200;
+    const ChamberFill fill = fill_of(study);
     const auto target_at = [&](double y) {
-        const double g = std::clamp(study.target(y), 0.0, 1.0);
+        const double g = fill.side_share(study.target(y));
         return orientation.a_above ? g : 1 - g;  // a falling target's mirror rises
     };
     std::vector<PlanPoint> curve;
@@ -416,10 +424,11 @@ std::vector<double> closed_form_start(const Study& study, const PartitionFamily&
         return family.fit_samples(closed_form_curve(study, family.orientation(), quantile, fold));
     const double width = study.dispenser_width;
     const int steps = 800, samples = 200;  // as above
+    const ChamberFill fill = fill_of(study);
     std::vector<double> height, inner;
     for (int j = 0; j <= steps; ++j) {
         height.push_back(width * (kBelow + (kAbove - kBelow) * j / steps));
-        const double g = std::clamp(study.target(height.back()), 0.0, 1.0);
+        const double g = fill.side_share(study.target(height.back()));
         inner.push_back(family.orientation().a_above ? g : 1 - g);
     }
     // what no height asks for closes the band where the most is asked for

@@ -17,7 +17,10 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
     Scene scene = study.scene;
     scene.width = strip ? study.strip_width : study.dispenser_width;
     // A map lives on y-homogeneity: no side walls, whatever the machine has.
-    if (strip) scene.sides = Sides::periodic;
+    if (strip) {
+        scene.sides = Sides::periodic;
+        scene.share_a = {1, 0};  // its grains carry no powder
+    }
     scene.land = design.land >= 0 ? design.land : study.scene.land;
     // Dispenser and platform are equally wide, so the ratio of areas is that of the lengths (physics.md 1.3).
     scene.dose_height =

@@ -48,6 +48,28 @@ void read_design_space(TomlReader& reader, Section& root, Study& study) {
                          "take the middle of the range, or try several values with `evaluate --set`");
     }
     fill.finish();
+    Section premix = space.sub("premix");
+    const Default pure[2] = {{1, "pure powder"}, {0, "pure powder"}};
+    for (const int i : {0, 1})
+        scene.share_a[i] = premix.number(i == 0 ? "A" : "B", pure[i], Range::between(0, 1));
+    premix.finish();
+    const std::vector<std::string> premix_keys = {"design_space.premix.A", "design_space.premix.B"};
+    if (reader.sound(premix_keys) && !(scene.share_a[0] > scene.share_a[1]))
+        reader.conflict(
+            premix_keys,
+            fmt::format("chamber A holds {:.3g} of powder A and chamber B {:.3g}: there is nothing to grade",
+                        scene.share_a[0], scene.share_a[1]),
+            "give chamber A the larger share of powder A");
+    else if (reader.sound(premix_keys) && reader.sound({"target"})) {
+        const auto [low, high] = study.target.gi_range();
+        constexpr double kBeyond = 0.005;
+        if (low < scene.share_a[1] - kBeyond || high > scene.share_a[0] + kBeyond)
+            study.warnings.push_back(
+                fmt::format("the target asks for GI {:.3g} to {:.3g}, the chambers hold {:.3g} to {:.3g} "
+                            "(design_space.premix): "
+                            "beyond that no partition can go",
+                            low, high, scene.share_a[1], scene.share_a[0]));
+    }
     design.dosage_factor = space.variable("dosage_factor", "dosage_factor", "", design.dosage_factor,
                                           "section 2.1 of the paper: the dispenser rises by twice the layer",
                                           Range::above_to(0, 100));

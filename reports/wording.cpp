@@ -66,9 +66,14 @@ std::string fill_line(const Study& study, const StudyResult& result, int chamber
         area = chamber == 0 ? area_a : area - area_a;
     }
     const double fraction = result.design.fill_fraction[static_cast<std::size_t>(chamber)];
-    std::string line = fmt::format("{}: {}, D10/D50/D90 {:.0f}/{:.0f}/{:.0f} um, fill fraction {:.3g}",
-                                   chamber == 0 ? "A" : "B", powder.material.name, powder.size.d10 * 1e6,
-                                   powder.size.d50 * 1e6, powder.size.d90 * 1e6, fraction);
+    const double own = chamber == 0 ? scene.share_a[0] : 1 - scene.share_a[1];
+    const Powder& other = scene.powder[static_cast<std::size_t>(1 - chamber)];
+    std::string what = fmt::format("{}, D10/D50/D90 {:.0f}/{:.0f}/{:.0f} um", powder.material.name,
+                                   powder.size.d10 * 1e6, powder.size.d50 * 1e6, powder.size.d90 * 1e6);
+    if (own < 1)
+        what = fmt::format("premix of {:.3g} % {} and {:.3g} % {} by solid volume", own * 100,
+                           powder.material.name, (1 - own) * 100, other.material.name);
+    std::string line = fmt::format("{}: {}, fill fraction {:.3g}", chamber == 0 ? "A" : "B", what, fraction);
     if (fraction < 1)
         line +=
             fmt::format(" (level {} mm below the rim)", millimetres((1 - fraction) * scene.dispenser_depth));
@@ -77,7 +82,8 @@ std::string fill_line(const Study& study, const StudyResult& result, int chamber
     if (packing >
         0)  // a real well is as deep as the machine says; the bed that was simulated may be shallower
         line += fmt::format(", about {:.3g} mg at packing {:.2f}",
-                            area * scene.dispenser_depth * fraction * packing * powder.material.density * 1e6,
+                            area * scene.dispenser_depth * fraction * packing *
+                                (own * powder.material.density + (1 - own) * other.material.density) * 1e6,
                             packing);
     return line;
 }

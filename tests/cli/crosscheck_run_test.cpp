@@ -71,6 +71,26 @@ TEST_F(LammpsAtWork, crosscheck_gives_every_field_and_keeps_the_decks) {
         EXPECT_TRUE(fs::is_regular_file(folder_ / "work" / "out" / file.get<std::string>())) << file;
 }
 
+TEST_F(LammpsAtWork, speed_times_both_engines_on_the_same_bed_at_rest_and_in_flow) {
+    const Outcome outcome =
+        run({"crosscheck", "lammps", "tiny.toml", "--speed", "--steps", "50", "--out", "out", "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const json result = json::parse(outcome.out);
+    ASSERT_EQ(result["speed"].size(), 2u);
+    for (const json& one : result["speed"]) {
+        EXPECT_GT(one["grains"].get<int>(), 100);
+        double best = 0;
+        for (const json& speed : one["lammps_by_skin"]) best = std::max(best, speed.get<double>());
+        EXPECT_EQ(one["lammps_grain_steps_per_second"].get<double>(), best);
+        EXPECT_NEAR(one["speed_ratio"].get<double>(),
+                    one["gradwright_grain_steps_per_second"].get<double>() / best, 1e-9);
+    }
+    EXPECT_EQ(result["threads"], 1);
+    EXPECT_EQ(result["ranks"], 1);
+    // what flows in ours flows in LAMMPS: its data file holds the velocities
+    EXPECT_TRUE(fs::is_regular_file(folder_ / "work" / "out" / "flowing" / "in.spread"));
+}
+
 TEST_F(LammpsAtWork, evaluate_at_fidelity_lammps_gives_the_fields_of_a_full_spread) {
     const Outcome outcome =
         run({"evaluate", "tiny.toml", "--fidelity", "lammps", "--threads", "1", "--out", "out", "--json"});

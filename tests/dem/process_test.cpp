@@ -114,6 +114,36 @@ TEST(Packing, grains_lie_on_their_side_of_the_partition) {
     EXPECT_LT(volume[0] / (volume[0] + volume[1]), 0.65);
 }
 
+TEST(Packing, a_premix_fills_each_chamber_with_its_shares_of_both_powders) {
+    for (const bool same_size : {true, false}) {
+        Scene scene = smallest_scene();
+        scene.dispenser_length = 0.4e-3;
+        scene.share_a = {0.75, 0.2};
+        if (!same_size) scene.powder[1].size.d50 = 45e-6;
+        const auto partition = straight_partition(scene.dispenser_length, scene.width, 0.2, 0);
+        SpreadOptions options;
+        options.threads = 1;
+        RunHealth health;
+        const Bed bed = pack_bed(scene, &partition, options, health);
+        ASSERT_EQ(health.status, "ok") << health.reason;
+        double of_a[2] = {}, all[2] = {}, square[2] = {};
+        for (std::size_t i = 0; i < bed.x.size(); ++i) {
+            const int chamber = partition.on_side_a(bed.x[i], bed.y[i]) ? 0 : 1;
+            const double v = sphere_volume(bed.radius[i]);
+            all[chamber] += v;
+            square[chamber] += v * v;
+            if (bed.material[i] == 0) of_a[chamber] += v;
+        }
+        for (const int chamber : {0, 1}) {
+            const double m = scene.share_a[chamber];
+            // single grains dealt by lot: sd sqrt(m (1 - m) sum V^2) / sum V
+            const double sd = std::sqrt(m * (1 - m) * square[chamber]) / all[chamber];
+            EXPECT_NEAR(of_a[chamber] / all[chamber], m, 3 * sd) << same_size;
+            EXPECT_LT(sd, 0.08);
+        }
+    }
+}
+
 TEST(Packing, two_curves_hold_one_powder_between_them_with_and_without_their_plates) {
     for (const double thickness : {0.0, 40e-6}) {
         Scene scene = smallest_scene();

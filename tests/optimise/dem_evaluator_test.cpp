@@ -1,4 +1,5 @@
-// How a labelled spread is read: every grain for every y where that holds, bins of their own grains where not.
+// How a labelled spread is read: every grain for every y where that holds, bins of their own grains where
+// not.
 #include "optimise/dem_evaluator.h"
 
 #include <gtest/gtest.h>
@@ -61,8 +62,8 @@ TEST(DemEvaluator, the_band_of_every_grain_holds_the_truth_at_its_rate) {
     int misses = 0;
     for (int seed = 1; seed <= 40; ++seed) {
         const Evaluation got = spread_once(study, heap, seed);
-        const Band band = simultaneous_band(got.profile.gi, got.profile.standard_error, got.profile.degrees,
-                                            got.weight);
+        const Band band =
+            simultaneous_band(got.profile.gi, got.profile.standard_error, got.profile.degrees, got.weight);
         for (std::size_t b = 0; b < got.weight.size(); ++b)
             if (got.weight[b] > 0 && !(band.low[b] <= expected.gi[b] && expected.gi[b] <= band.high[b])) {
                 ++misses;

@@ -86,8 +86,11 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
         layer.origin_z.push_back(-50e-6);
         layer.volume.push_back(volume);
         layer.radius.push_back(std::cbrt(volume * 0.75 / std::numbers::pi));
-        const double from = layer.periodic ? origin_y - scene.width * std::floor(origin_y / scene.width) : origin_y;
-        layer.is_a.push_back(labelled && partition->on_side_a(origin_x, from));
+        const double from =
+            layer.periodic ? origin_y - scene.width * std::floor(origin_y / scene.width) : origin_y;
+        const bool side_a = labelled && partition->on_side_a(origin_x, from);
+        const double share = scene.share_a[side_a ? 0 : 1];
+        layer.is_a.push_back(labelled && (share == 0 || share == 1 ? share > 0 : random.uniform() < share));
         if (labelled && heap.stray > 0 && random.uniform() < heap.stray)
             layer.is_a.back() = random.uniform() < 0.5;
         layer.dosed_solid_volume += volume / heap.capture;

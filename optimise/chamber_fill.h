@@ -1,0 +1,52 @@
+// What stands in the two chambers, and what that makes of the partition's shares.
+//
+// A map answers with the share s of the laid solid that came from chamber A's side. With a premix the powder
+// of chamber k holds a share m_k of powder A; with unequal levels chamber k stands d_k = h - c_k above the
+// rim in the pass (physics.md 1.3), so that much less of it is there to be laid. To first order (the level
+// step itself moves no powder) both act bin by bin,
+//   GI = (s d_A m_A + (1 - s) d_B m_B) / (s d_A + (1 - s) d_B),
+// which is s itself with pure powders and equal levels. Exact for a premix of powders that move alike.
+#pragma once
+#include <array>
+
+#include "dem/gradation.h"
+#include "optimise/study.h"
+
+namespace gradwright {
+
+struct ChamberFill {
+    std::array<double, 2> share_a = {1, 0};  ///< m: share of powder A in the powder of chamber A, B [-]
+    std::array<double, 2> dose = {1, 1};     ///< d, in any unit
+
+    bool pure() const { return share_a[0] == 1 && share_a[1] == 0; }
+    bool level() const { return dose[0] == dose[1]; }
+
+    /// GI of a bin whose share of chamber A is s, for double or ceres::Jet.
+    template <class T>
+    T gi(const T& s) const {
+        if (pure() && level()) return s;
+        if (level()) return share_a[1] + (share_a[0] - share_a[1]) * s;
+        const T a = s * dose[0], b = (1.0 - s) * dose[1];
+        return (a * share_a[0] + b * share_a[1]) / (a + b);
+    }
+    /// d GI / d s.
+    template <class T>
+    T slope(const T& s) const {
+        const double rise = share_a[0] - share_a[1];
+        if (level()) return T(rise);
+        const T sum = s * dose[0] + (1.0 - s) * dose[1];
+        return rise * dose[0] * dose[1] / (sum * sum);
+    }
+    /// Share of chamber A that gives this GI; 0 or 1 beyond what the two powders span.
+    double side_share(double gi) const;
+
+    /// Shares into GI, with their standard errors and cells.
+    void apply(GradationProfile& profile, XDrift& drift) const;
+    void apply(GradationMap& map) const;
+};
+
+/// Of a study with these fill fractions, dosage as in `dose_height` [m].
+ChamberFill chamber_fill(const Study& study, const std::array<double, 2>& fill_fraction, double dose_height);
+ChamberFill chamber_fill(const Study& study, const Design& design);
+
+}  // namespace gradwright
