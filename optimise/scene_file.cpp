@@ -435,12 +435,18 @@ void read_numerics(TomlReader& reader, Section& root, Study& study) {
                 "none"
             ? AdhesionScaling::none
             : AdhesionScaling::cohesion_number;
+    study.reductions =
+        section.choices("reductions", {kReductions.begin(), kReductions.end()},
+                        "nothing is left out of the physics", "reduced", {kReduced.begin(), kReduced.end()});
+    const toml::node* named = reader.root().at_path("numerics.reductions").node();
+    const bool set = named && named->is_string() && !study.reductions.empty();
     Section time_step = section.sub("time_step");
-    scene.rayleigh_fraction = time_step.number("rayleigh_fraction", {scene.rayleigh_fraction, "our default"},
-                                               Range::above_to(0, 1));
+    scene.rayleigh_fraction = time_step.number(
+        "rayleigh_fraction",
+        set ? Default{kReducedRayleighFraction, "reductions \"reduced\": free by docs/speed-against-error.md"}
+            : Default{scene.rayleigh_fraction, "our default"},
+        Range::above_to(0, 1));
     time_step.finish();
-    study.reductions = section.choices("reductions", {kReductions.begin(), kReductions.end()},
-                                       "nothing is left out of the physics");
     const auto reduced = [&study](const char* name) {
         return std::find(study.reductions.begin(), study.reductions.end(), name) != study.reductions.end();
     };

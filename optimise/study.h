@@ -83,6 +83,11 @@ inline constexpr std::array<const char*, 6> kReductions = {
     "early_stop",     // the blade stops at the platform's end
 };
 
+/// reductions = "reduced": what docs/speed-against-error.md has found free, together with this time step.
+inline constexpr std::array<const char*, 4> kReduced = {"fines_cut", "shallow_bed", "strip_map",
+                                                        "early_stop"};
+inline constexpr double kReducedRayleighFraction = 0.3;
+
 struct Study {
     std::string name;  ///< file stem, or [study] name
     std::string file;  ///< path as given

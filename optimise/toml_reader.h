@@ -144,8 +144,10 @@ class Section {
                                    const Range& range);
     /// [["0 mm", "0.4 mm"], ...] of plan points.
     std::vector<PlanPoint> points(const std::string& key, std::size_t at_least);
+    /// A list of names, or the single word `set_name` for all of `set`.
     std::vector<std::string> choices(const std::string& key, const std::vector<std::string>& valid,
-                                     const std::string& note);
+                                     const std::string& note, const std::string& set_name = "",
+                                     const std::vector<std::string>& set = {});
 
     std::string path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
     TomlReader::Found find(const std::string& key);

@@ -373,15 +373,23 @@ std::vector<PlanPoint> Section::points(const std::string& key, std::size_t at_le
 }
 
 std::vector<std::string> Section::choices(const std::string& key, const std::vector<std::string>& valid,
-                                          const std::string& note) {
+                                          const std::string& note, const std::string& set_name,
+                                          const std::vector<std::string>& set) {
     const TomlReader::Found found = find(key);
     if (!found.node) {
         reader_.record({path(key), "none", "", "default", note});
         return {};
     }
+    if (const auto* word = found.node->as_string(); word && !set_name.empty() && word->get() == set_name) {
+        reader_.record({path(key), set_name + ": " + joined(set), "", found.origin, found.note});
+        return set;
+    }
     const toml::array* array = found.node->as_array();
     if (!array) {
-        problem(found, key, "must be a list of names", "such as [" + quoted_list({valid.front()}) + "]");
+        problem(
+            found, key,
+            set_name.empty() ? "must be a list of names" : "must be a list of names, or \"" + set_name + "\"",
+            "such as [" + quoted_list({valid.front()}) + "]");
         return {};
     }
     std::vector<std::string> result;
