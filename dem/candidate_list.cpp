@@ -49,7 +49,7 @@ void Engine::rebuild_candidates() {
     auto& s = state_;
     skin_ = options_.skin > 0 ? options_.skin : 0.45 * smallest_radius_ + 0.15 * largest_radius_;
     near_skin_ = options_.near_skin > 0 ? options_.near_skin : 0.12 * smallest_radius_;
-    const double cell = 2 * largest_radius_ + skin_;
+    const double cell = 2 * largest_radius_ + kWidestReach * skin_;
 
     double lo_x = 1e30, hi_x = -1e30, lo_z = 1e30, hi_z = -1e30, lo_y = 1e30, hi_y = -1e30;
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -107,6 +107,7 @@ void Engine::rebuild_candidates() {
     built_x_ = s.x;
     built_y_ = s.y;
     built_z_ = s.z;
+    choose_wide_reach();
 
     // Candidates j > i of every grain, block by block.
     const std::size_t blocks = (n + kBlock - 1) / kBlock;
@@ -123,7 +124,7 @@ void Engine::rebuild_candidates() {
             if (periodic) y -= span_y * std::floor(y / span_y);
             const int cy = std::clamp(static_cast<int>(y * inv_y), 0, ny - 1);
             const int cz = std::clamp(static_cast<int>((s.z[i] - lo_z) / cell), 0, nz - 1);
-            const double reach = s.radius[i] + skin_;
+            const double reach = s.radius[i] + wide_reach_[i];
             int rows[3], row_count = 0;
             for (int dy = -1; dy <= 1; ++dy) {
                 int row = cy + dy;
@@ -145,7 +146,7 @@ void Engine::rebuild_candidates() {
                         double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
                         if (period_x > 0) dx -= period_x * std::nearbyint(dx / period_x);
                         if (period_z > 0) dz -= period_z * std::nearbyint(dz / period_z);
-                        const double cut = reach + s.radius[j];
+                        const double cut = reach + s.radius[j] + wide_reach_[j];
                         if (dx * dx + dy * dy + dz * dz < cut * cut && !(s.fixed[i] && s.fixed[j]))
                             list.push_back(j);
                     }
@@ -167,7 +168,8 @@ void Engine::rebuild_candidates() {
     }
 
     find_reachable_bodies();
-    frame_shift_ = body_way_ = 0;
+    frame_shift_ = {};
+    body_way_ = 0;
 
     // Reverse list: for every grain the candidate numbers in which it is the second, ascending.
     reverse_first_.assign(n + 1, 0);
@@ -189,7 +191,7 @@ void Engine::find_reachable_bodies() {
             if (body_removed_[b]) continue;
             const auto p = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_,
                                          bodies_[b].speed_z * body_time_, s.x[i], s.y[i], s.z[i]);
-            if (p.distance < s.radius[i] + skin_) reachable_[i] |= 1u << b;
+            if (p.distance < s.radius[i] + wide_reach_[i] + wide_body_reach_) reachable_[i] |= 1u << b;
         }
     }
 }

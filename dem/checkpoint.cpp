@@ -87,7 +87,13 @@ void Engine::archive(Archive& to) {
     to.value(bodies_move_);
     to.value(steps_);
     to.value(grain_steps_);
+    to.value(frame_);
     to.value(frame_shift_);
+    to.value(typical_speed_);
+    to.value(body_reach_);
+    to.value(wide_body_reach_);
+    to.value(still_rate_);
+    for (auto* array : {&reach_, &wide_reach_, &inverse_reach2_}) to.array(*array);
     to.value(body_way_);
     to.value(travel_);
     to.value(steps_since_near_);

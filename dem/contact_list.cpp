@@ -121,7 +121,7 @@ void Engine::KernelOf<T>::rebuild_near() {
     const double inv_period = period > 0 ? 1 / period : 0;
     const double inv_period_x = e.options_.period_x > 0 ? 1 / e.options_.period_x : 0;
     const double inv_period_z = e.options_.period_z > 0 ? 1 / e.options_.period_z : 0;
-    const double near = e.near_skin_;
+    const float* const reach = e.reach_.data();
 
     auto touching_before = [&](std::int32_t code) {
         if (code == -1) return false;
@@ -143,7 +143,7 @@ void Engine::KernelOf<T>::rebuild_near() {
                 double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
                 dx -= e.options_.period_x * std::nearbyint(dx * inv_period_x);
                 dz -= e.options_.period_z * std::nearbyint(dz * inv_period_z);
-                const double cut = s.radius[i] + s.radius[j] + near;
+                const double cut = s.radius[i] + s.radius[j] + reach[i] + reach[j];
                 kind = dx * dx + dy * dy + dz * dz < cut * cut ? 1 : 0;
             }
             keep[c] = kind;
@@ -385,7 +385,7 @@ void Engine::KernelOf<T>::rebuild_walls() {
             if (!(e.reachable_[i] >> b & 1) || e.body_removed_[b]) continue;
             const auto p = nearest_point(e.bodies_[b], e.bodies_[b].speed_x * e.body_time_,
                                          e.bodies_[b].speed_z * e.body_time_, s.x[i], s.y[i], s.z[i]);
-            if (p.distance < s.radius[i] + e.near_skin_) near[i] |= 1u << b;
+            if (p.distance < s.radius[i] + e.reach_[i] + e.body_reach_) near[i] |= 1u << b;
         }
     }
     std::int32_t next = 0;

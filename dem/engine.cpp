@@ -207,6 +207,9 @@ double Engine::memory_bytes() const {
     auto count = [&](const auto& v) { bytes += static_cast<double>(v.size() * sizeof(v[0])); };
     const_cast<State&>(state_).for_each_array(count);
     count(built_x_);
+    count(reach_);
+    count(wide_reach_);
+    count(inverse_reach2_);
     count(built_y_);
     count(built_z_);
     count(candidate_first_);
@@ -250,24 +253,6 @@ void Engine::check_health() {
         failed_ = "speed";
 }
 
-double Engine::frame_speed() const {
-    double low = 0, high = 0;
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-        if (bodies_move_ && !body_removed_[b]) {
-            low = std::min(low, bodies_[b].speed_x);
-            high = std::max(high, bodies_[b].speed_x);
-        }
-    return 0.5 * (low + high);
-}
-
-double Engine::body_speed(double frame) const {
-    double top = std::fabs(frame);
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-        if (bodies_move_ && !body_removed_[b])
-            top = std::max(top, std::hypot(bodies_[b].speed_x - frame, bodies_[b].speed_z));
-    return top;
-}
-
 long Engine::advance(long steps) {
     long done = 0;
     // Who sleeps is decided when the near list is made: in a bed almost at rest that must not wait for the
@@ -276,20 +261,10 @@ long Engine::advance(long steps) {
                                 ? std::max(1L, std::lround(options_.sleep_time / options_.time_step))
                                 : std::numeric_limits<long>::max();
     while (done < steps && failed_.empty()) {
-        if (!lists_valid_ || travel_ > near_skin_ || steps_since_near_ >= sleep_look) {
+        if (!lists_valid_ || travel_ > 1 || steps_since_near_ >= sleep_look) {
             const double start = omp_get_wtime();
-            bool rebuild = !lists_valid_;
-            if (!rebuild) {
-                double moved = body_way_ * body_way_;
-                for (const std::int32_t i : awake_) {
-                    const double dx = state_.x[i] - built_x_[i] - frame_shift_,
-                                 dy = state_.y[i] - built_y_[i], dz = state_.z[i] - built_z_[i];
-                    moved = std::max(moved, dx * dx + dy * dy + dz * dz);
-                }
-                // two grains may have approached by twice the largest move; what is left must cover the near
-                // skin
-                rebuild = 2 * std::sqrt(moved) + near_skin_ * 1.5 > skin_;
-            }
+            choose_frame();
+            const bool rebuild = !lists_valid_ || !choose_reach();
             check_health();
             if (!failed_.empty()) break;
             if (rebuild) {
@@ -298,6 +273,7 @@ long Engine::advance(long steps) {
                 kernel_->carry_history();
             }
             update_sleep();
+            choose_reach();  // in the new order, and with who has fallen asleep
             const double middle = omp_get_wtime();
             times_.candidates += middle - start;
             kernel_->rebuild_near();
@@ -313,7 +289,7 @@ long Engine::advance(long steps) {
                     ? step_with_account()
                     : kernel_->run(std::min(steps - done, sleep_look - steps_since_near_));
     }
-    if (failed_.empty() && travel_ > near_skin_) check_health();  // a run that ends here is judged here
+    if (failed_.empty() && travel_ > 1) check_health();  // a run that ends here is judged here
     return done;
 }
 

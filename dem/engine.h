@@ -3,7 +3,8 @@
 // refresh lists if moved).
 //
 // Two lists: candidates within `skin` (rebuilt with the cell order, about every 100-200 steps) and, of those,
-// the near pairs within `near_skin` (about every 10-20 steps), which are what the law sees. A near pair keeps
+// the near pairs within `near_skin` (about every 20-30 steps), which are what the law sees; both skins are what a
+// pair of typical grains gets, fast ones get more (reach.cpp). A near pair keeps
 // its place between refreshes, so that the law reads and writes its history in place and one grain's sums run
 // over fixed slots in fixed order: same bits on any number of threads, no atomics. (Measured alternative:
 // test all candidates every step and compress, see contact_list.cpp.)
@@ -39,8 +40,8 @@ struct EngineOptions {
     double sleep_speed = 0.5e-3;   ///< grains slower than this ... [m/s]
     double sleep_time = 0.3e-3;    ///< ... for so long, with neighbours alike, fall asleep [s]
     double wake_speed = 1.0e-3;    ///< an awake near neighbour faster than this wakes a sleeper [m/s]
-    double skin = 0;               ///< candidate skin [m], 0 = from the grain size
-    double near_skin = 0;          ///< near-pair skin [m], 0 = from the grain size
+    double skin = 0;               ///< candidate skin of two typical grains [m], 0 = from the grain size
+    double near_skin = 0;          ///< near-pair skin of two typical grains [m], 0 = from the grain size
     int threads = 0;               ///< 0 = OpenMP's default
     double speed_limit = 20;       ///< faster grains mean the run has diverged [m/s]
     double remove_beyond_x = 1e9;  ///< grains past this x leave the run (overflow) [m]
@@ -159,11 +160,15 @@ class Engine {
     void rebuild_candidates();
     void find_reachable_bodies();
     void update_sleep();
-    /// Half way between the fastest bodies along x [m/s]. Two things close in by no more than the sum of
-    /// their ways against any common frame; in this one what the blade pushes and what stands still count
-    /// half.
-    double frame_speed() const;
-    double body_speed(double frame) const;  ///< largest speed of a body or fixed grain against the frame
+    /// Two things close in by no more than the sum of their ways against any common frame. Taken is the mean
+    /// motion of the grains that are awake, so that a heap that is pushed along, or a bed that falls, counts by
+    /// what moves within it.
+    void choose_frame();
+    /// How far each thing may go against the frame before the near list is made anew (dem/reach.cpp). False
+    /// when the candidates leave some too little room.
+    bool choose_reach();
+    void choose_wide_reach();  ///< how far before the candidates are
+    double body_speed() const;  ///< largest speed of a body against the frame [m/s]
     void check_health();
     long step_with_account();  ///< one step, booked in `energy_`
     void book_leaving_grains();
@@ -181,9 +186,13 @@ class Engine {
     bool bodies_move_ = false;
     long steps_ = 0;
     double grain_steps_ = 0;
-    double frame_shift_ = 0,
-           body_way_ = 0;  ///< since the candidates were found: of the frame, of bodies in it
-    double travel_ = 0;    ///< closing distance possible since the near list was made [m]
+    std::array<double, 3> frame_{};        ///< velocity of the frame [m/s]
+    std::array<double, 3> frame_shift_{};  ///< its way since the candidates were found [m]
+    double typical_speed_ = 0;             ///< rms against the frame of the grains that are awake [m/s]
+    double body_way_ = 0;                  ///< of bodies against the frame since the candidates were found [m]
+    double body_reach_ = 0, wide_body_reach_ = 0;  ///< of bodies [m]
+    double still_rate_ = 0;  ///< of fixed and sleeping grains: share of their reach used up in a second [1/s]
+    double travel_ = 0;      ///< largest share of a reach used up since the near list was made; 1 ends it
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;
     bool constants_valid_ = true;  ///< false: pair constants are computed anew at the next refresh
@@ -191,6 +200,9 @@ class Engine {
     std::string failed_;
     EngineTimes times_;
     EnergyLedger energy_;
+
+    // by grain [m]; as 1/reach^2 what the step reads
+    std::vector<float> reach_, wide_reach_, inverse_reach2_;
 
     // candidate list, in cell order
     std::vector<double> built_x_, built_y_, built_z_;

@@ -20,6 +20,9 @@
 
 namespace gradwright {
 
+/// Largest sum of two wide reaches, in candidate skins: what a cell must hold beside two grains.
+inline constexpr double kWidestReach = 1.5;
+
 /// Kernel-independent face of the tiles.
 struct Engine::Kernel {
     struct Predicted {
@@ -154,10 +157,10 @@ struct Engine::KernelOf final : Engine::Kernel {
     template <bool kAdhesive, RollingModel kRolling>
     long run_with(long steps);
     /// Sums, motion and predicted motion of a block's awake grains. `own`: by slot; `second`: by place,
-    /// modulo `mask` + 1. Returns the largest speed squared against `frame` [m2/s2]; infinite when it is no
-    /// number.
+    /// modulo `mask` + 1. Returns the largest (speed against `frame` / reach)^2 [1/s2]; infinite when it is
+    /// no number.
     double grain_pass(const Block& block, const Record* own, const Record* second, std::int32_t mask,
-                      double kick, double frame);
+                      double kick, D4 frame);
     std::array<double, 3> force_on_fixed_of(const Block& block, const Record* own) const;
 
     BodyForce force_on_body(int body) const override;

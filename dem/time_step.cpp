@@ -34,7 +34,7 @@ inline void put(D4 from, double* to) {
 
 template <class T>
 double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, const Record* second,
-                                       std::int32_t mask, double kick, double frame) {
+                                       std::int32_t mask, double kick, D4 frame) {
     const double dt = e.options_.time_step;
     const D4 gravity = {e.options_.gravity[0], e.options_.gravity[1], e.options_.gravity[2], 0};
     const double half = e.options_.fault.late_velocity ? 0 : 0.5 * dt;
@@ -69,10 +69,12 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, co
         D4 x = *reinterpret_cast<const D4*>(&position[i]);
         x += dt * way;
         *reinterpret_cast<D4*>(&position[i]) = x;
-        const double forward = v[0] - frame;
-        const double speed2 = forward * forward + v[1] * v[1] + v[2] * v[2];
-        top = std::max(top, speed2);
-        sum += speed2;
+        const D4 against = v - frame;
+        const double share2 =
+            (against[0] * against[0] + against[1] * against[1] + against[2] * against[2]) *
+            e.inverse_reach2_[static_cast<std::size_t>(i)];
+        top = std::max(top, share2);
+        sum += share2;
         D4 next_v = v + half * a, next_w = w + half * b;
         next_v[3] = x[3];  // the radius stands there
         next_w[3] = 0;
@@ -86,7 +88,9 @@ template <class T>
 template <bool kAdhesive, RollingModel kRolling>
 long Engine::KernelOf<T>::run_with(long steps) {
     const double dt = e.options_.time_step;
-    const double frame = e.frame_speed(), body_top = e.body_speed(frame);
+    const D4 frame = {e.frame_[0], e.frame_[1], e.frame_[2], 0};
+    const double body_top = e.body_speed();
+    const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
     const auto count = static_cast<int>(shares.size());
     std::vector<double> tops(static_cast<std::size_t>(count) * 8, 0.0);
     long done = 0;
@@ -155,12 +159,10 @@ long Engine::KernelOf<T>::run_with(long steps) {
             double top = 0;
             for (int k = 0; k < count; ++k) top = std::max(top, tops[k * 8]);
             top = std::sqrt(top);
-            my_travel +=
-                dt *
-                (top + std::max(top, body_top));  // two grains, or a grain and a body, close in by no more
+            my_travel += dt * std::max(top, rest_rate);
             my_done = step + 1;
             // `not (a <= b)`: a speed that is not a number ends the block too
-            if (!(my_travel <= e.near_skin_)) break;
+            if (!(my_travel <= 1)) break;
         }
         State& s = e.state_;
         for (int k = me; k < count; k += all)
@@ -181,7 +183,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
     e.travel_ = std::isfinite(travel) ? travel : 1e9;
     e.steps_ += done;
     e.steps_since_near_ += done;
-    e.frame_shift_ += frame * dt * done;
+    for (int k = 0; k < 3; ++k) e.frame_shift_[k] += frame[k] * dt * done;
     e.body_way_ += body_top * dt * done;
     e.time_ += dt * done;
     if (e.bodies_move_) e.body_time_ += dt * done;

@@ -119,8 +119,8 @@ std::map<int, std::array<double, 6>> circling_pair(Precision precision, RollingM
     o.interaction.rolling_model = rolling;
     if (!rebuild) o.skin = 20 * kRadius, o.near_skin = 19 * kRadius;
     Engine e(o);
-    const double cell = 2 * kRadius + 0.6 * kRadius, turn = 1000,
-                 reach = kRadius - 2e-9;  // 0.45 r + 0.15 r: the default skin
+    const double cell = 2 * kRadius + 1.5 * 0.6 * kRadius, turn = 1000,
+                 reach = kRadius - 2e-9;  // 1.5 (0.45 r + 0.15 r): the default skin and its widest reach
     e.add_grain({.x = -4 * cell, .z = 0, .radius = kRadius, .fixed = true});
     // around x = 0, the boundary of two cells
     const int a = e.add_grain({.x = -reach, .vy = -turn * reach, .wz = turn + 30, .radius = kRadius});
@@ -368,6 +368,65 @@ TEST(Bodies, a_moving_body_pushes_and_a_stopped_one_does_not) {
     e.start_bodies();
     e.advance(2000);
     EXPECT_NEAR(e.velocity(0)[0], 0.2, 1e-3);  // elastic: twice the blade's speed
+}
+
+TEST(Lists, no_touching_pair_or_wall_contact_is_missed_however_fast_single_grains_are) {
+    // A gas that drifts as a whole, a few grains thirty times as fast as the rest, over a plane that does not
+    // move with it: what touches by brute force is what the law sees, step by step.
+    EngineOptions o = bare();
+    const double box = 14 * kRadius, step = 0.1 * kStep;
+    o.time_step = step;
+    o.period_x = o.period_y = box;
+    o.period_z = 0;
+    Engine e(o);
+    const int floor = e.add_body(plane_z(0)), fixed = e.add_grain({.z = -3 * kRadius, .radius = kRadius, .fixed = true});
+    Body lid = plane_z(box);
+    lid.sign = -1;
+    const int roof = e.add_body(lid);
+    Random random(7);
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+            for (int k = 0; k < 5; ++k) {
+                const double fast = random.uniform() < 0.03 ? 30 : 1;
+                const auto kick = [&] { return 0.03 * fast * random.normal(); };
+                e.add_grain({.x = (i + 0.5) * box / 6,
+                             .y = (j + 0.5) * box / 6,
+                             .z = (k + 0.5) * box / 5,
+                             .vx = 0.1 + kick(),
+                             .vy = kick(),
+                             .vz = kick(),
+                             .radius = kRadius * (0.5 + 0.6 * random.uniform())});
+            }
+    EXPECT_EQ(fixed, 0);
+    long touching = 0, walls = 0;
+    for (int n = 0; n < 6000; ++n) {
+        const State& s = e.state();
+        long sure = 0, doubtful = 0;
+        for (std::size_t i = 0; i < s.size(); ++i)
+            for (std::size_t j = i + 1; j < s.size(); ++j) {
+                double dx = s.x[i] - s.x[j], dy = s.y[i] - s.y[j];
+                dx -= box * std::nearbyint(dx / box);
+                dy -= box * std::nearbyint(dy / box);
+                const double dz = s.z[i] - s.z[j];
+                const double overlap = s.radius[i] + s.radius[j] - std::sqrt(dx * dx + dy * dy + dz * dz);
+                sure += overlap > 1e-9 * kRadius;
+                doubtful += std::abs(overlap) <= 1e-9 * kRadius;
+            }
+        const bool hits[2] = {!e.overlapping_body(floor, 1e-9).empty(), !e.overlapping_body(roof, 1e-9).empty()};
+        e.advance(1);
+        ASSERT_TRUE(e.failed().empty()) << e.failed();
+        const long seen = static_cast<long>(e.contacts());
+        ASSERT_GE(seen, sure) << "step " << n;
+        ASSERT_LE(seen, sure + doubtful) << "step " << n;
+        touching += sure;
+        for (const int b : {0, 1}) {
+            if (!hits[b]) continue;
+            ++walls;
+            ASSERT_NE(e.force_on_body(b == 0 ? floor : roof).z, 0) << "step " << n;
+        }
+    }
+    EXPECT_GT(touching, 1000);
+    EXPECT_GT(walls, 100);
 }
 
 TEST(Failure, grains_at_one_place_are_a_failed_run_and_not_a_silent_one) {
