@@ -3,11 +3,11 @@
 // refresh lists if moved).
 //
 // Two lists: candidates within `skin` (rebuilt with the cell order, about every 100-200 steps) and, of those,
-// the near pairs within `near_skin` (about every 20-30 steps), which are what the law sees; both skins are what a
-// pair of typical grains gets, fast ones get more (reach.cpp). A near pair keeps
-// its place between refreshes, so that the law reads and writes its history in place and one grain's sums run
-// over fixed slots in fixed order: same bits on any number of threads, no atomics. (Measured alternative:
-// test all candidates every step and compress, see contact_list.cpp.)
+// the near pairs within `near_skin` (about every 20-30 steps), which are what the law sees; both skins are
+// what a pair of typical grains gets, fast ones get more (reach.cpp). A near pair keeps its place between
+// refreshes, so that the law reads and writes its history in place and one grain's sums run over fixed slots
+// in fixed order: same bits on any number of threads, no atomics. (Measured alternative: test all candidates
+// every step and compress, see contact_list.cpp.)
 #pragma once
 #include <array>
 #include <cstdint>
@@ -161,13 +161,13 @@ class Engine {
     void find_reachable_bodies();
     void update_sleep();
     /// Two things close in by no more than the sum of their ways against any common frame. Taken is the mean
-    /// motion of the grains that are awake, so that a heap that is pushed along, or a bed that falls, counts by
-    /// what moves within it.
+    /// motion of the grains that are awake, so that a heap that is pushed along, or a bed that falls, counts
+    /// by what moves within it.
     void choose_frame();
     /// How far each thing may go against the frame before the near list is made anew (dem/reach.cpp). False
     /// when the candidates leave some too little room.
     bool choose_reach();
-    void choose_wide_reach();  ///< how far before the candidates are
+    void choose_wide_reach();   ///< how far before the candidates are
     double body_speed() const;  ///< largest speed of a body against the frame [m/s]
     void check_health();
     long step_with_account();  ///< one step, booked in `energy_`
@@ -189,7 +189,7 @@ class Engine {
     std::array<double, 3> frame_{};        ///< velocity of the frame [m/s]
     std::array<double, 3> frame_shift_{};  ///< its way since the candidates were found [m]
     double typical_speed_ = 0;             ///< rms against the frame of the grains that are awake [m/s]
-    double body_way_ = 0;                  ///< of bodies against the frame since the candidates were found [m]
+    double body_way_ = 0;  ///< of bodies against the frame since the candidates were found [m]
     double body_reach_ = 0, wide_body_reach_ = 0;  ///< of bodies [m]
     double still_rate_ = 0;  ///< of fixed and sleeping grains: share of their reach used up in a second [1/s]
     double travel_ = 0;      ///< largest share of a reach used up since the near list was made; 1 ends it

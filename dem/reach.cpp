@@ -2,13 +2,14 @@
 //
 // A pair must be on the near list before it touches. With one skin for all, the fastest grain of all decides
 // when that is no longer sure: in a spread some grain always flies or falls, and the list would be made anew
-// every few steps for it. So each grain has a reach of its own, in proportion to its speed against the frame: a
-// pair is listed when its gap is below the sum of the two reaches, and the list ends when the first grain has
-// used up its own. Fast grains carry a few more pairs, all others wait for longer.
+// every few steps for it. So each grain has a reach of its own, in proportion to its speed against the frame:
+// a pair is listed when its gap is below the sum of the two reaches, and the list ends when the first grain
+// has used up its own. Fast grains carry a few more pairs, all others wait for longer.
 //
-// The same one level up: the candidates hold every pair whose gap was below the sum of the wide reaches S when
-// they were found. A grain that has gone d since then (against the frame) has room S - d left for its near
-// reach h: two grains whose gap is below h_i + h_j now had a gap below h_i + d_i + h_j + d_j <= S_i + S_j then.
+// The same one level up: the candidates hold every pair whose gap was below the sum of the wide reaches S
+// when they were found. A grain that has gone d since then (against the frame) has room S - d left for its
+// near reach h: two grains whose gap is below h_i + h_j now had a gap below h_i + d_i + h_j + d_j <= S_i +
+// S_j then.
 #include <algorithm>
 #include <cmath>
 
@@ -17,9 +18,9 @@
 namespace gradwright {
 namespace {
 
-constexpr double kMargin = 1.3;       // of reach over way in the time the list is meant to last: speeds change
-constexpr double kLongestReach = 4;   // in those of a typical grain
-constexpr double kLeastRoom = 0.35;   // of the wide reach, before the candidates are found anew
+constexpr double kMargin = 1.3;      // of reach over way in the time the list is meant to last: speeds change
+constexpr double kLongestReach = 4;  // in those of a typical grain
+constexpr double kLeastRoom = 0.35;  // of the wide reach, before the candidates are found anew
 constexpr double kLongestSteps = 32;  // the list lasts no longer: waking spreads one neighbour each time
 
 double length(double x, double y, double z) {
@@ -55,8 +56,8 @@ double Engine::body_speed() const {
     double top = length(frame_[0], frame_[1], frame_[2]);
     for (std::size_t b = 0; b < bodies_.size(); ++b)
         if (bodies_move_ && !body_removed_[b])
-            top = std::max(top, length(bodies_[b].speed_x - frame_[0], frame_[1],
-                                           bodies_[b].speed_z - frame_[2]));
+            top = std::max(top,
+                           length(bodies_[b].speed_x - frame_[0], frame_[1], bodies_[b].speed_z - frame_[2]));
     return top;
 }
 
@@ -65,8 +66,7 @@ void Engine::choose_wide_reach() {
     const double typical = 0.5 * skin_, widest = 0.5 * kWidestReach * skin_;
     wide_reach_.resize(s.size());
     for (std::size_t i = 0; i < s.size(); ++i) {
-        const double speed =
-            length(s.vx[i] - frame_[0], s.vy[i] - frame_[1], s.vz[i] - frame_[2]);
+        const double speed = length(s.vx[i] - frame_[0], s.vy[i] - frame_[1], s.vz[i] - frame_[2]);
         wide_reach_[i] = static_cast<float>(
             typical_speed_ > 0 ? std::clamp(typical * speed / typical_speed_, typical, widest) : typical);
     }
@@ -92,8 +92,9 @@ bool Engine::choose_reach() {
         const bool still = s.fixed[i] || s.asleep[i];
         const double speed =
             still ? drift : length(s.vx[i] - frame_[0], s.vy[i] - frame_[1], s.vz[i] - frame_[2]);
-        const double gone = length(s.x[i] - built_x_[i] - frame_shift_[0], s.y[i] - built_y_[i] - frame_shift_[1],
-                                       s.z[i] - built_z_[i] - frame_shift_[2]);
+        const double gone =
+            length(s.x[i] - built_x_[i] - frame_shift_[0], s.y[i] - built_y_[i] - frame_shift_[1],
+                   s.z[i] - built_z_[i] - frame_shift_[2]);
         const double room = wide_reach_[i] - gone, want = wanted(speed);
         if (room < std::min(want, kLeastRoom * wide_reach_[i])) lacking = 1;
         const double reach = std::max(std::min(want, room), 1e-3 * typical);

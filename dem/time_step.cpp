@@ -70,9 +70,8 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, co
         x += dt * way;
         *reinterpret_cast<D4*>(&position[i]) = x;
         const D4 against = v - frame;
-        const double share2 =
-            (against[0] * against[0] + against[1] * against[1] + against[2] * against[2]) *
-            e.inverse_reach2_[static_cast<std::size_t>(i)];
+        const double share2 = (against[0] * against[0] + against[1] * against[1] + against[2] * against[2]) *
+                              e.inverse_reach2_[static_cast<std::size_t>(i)];
         top = std::max(top, share2);
         sum += share2;
         D4 next_v = v + half * a, next_w = w + half * b;

@@ -379,7 +379,8 @@ TEST(Lists, no_touching_pair_or_wall_contact_is_missed_however_fast_single_grain
     o.period_x = o.period_y = box;
     o.period_z = 0;
     Engine e(o);
-    const int floor = e.add_body(plane_z(0)), fixed = e.add_grain({.z = -3 * kRadius, .radius = kRadius, .fixed = true});
+    const int floor = e.add_body(plane_z(0)),
+              fixed = e.add_grain({.z = -3 * kRadius, .radius = kRadius, .fixed = true});
     Body lid = plane_z(box);
     lid.sign = -1;
     const int roof = e.add_body(lid);
@@ -412,7 +413,8 @@ TEST(Lists, no_touching_pair_or_wall_contact_is_missed_however_fast_single_grain
                 sure += overlap > 1e-9 * kRadius;
                 doubtful += std::abs(overlap) <= 1e-9 * kRadius;
             }
-        const bool hits[2] = {!e.overlapping_body(floor, 1e-9).empty(), !e.overlapping_body(roof, 1e-9).empty()};
+        const bool hits[2] = {!e.overlapping_body(floor, 1e-9).empty(),
+                              !e.overlapping_body(roof, 1e-9).empty()};
         e.advance(1);
         ASSERT_TRUE(e.failed().empty()) << e.failed();
         const long seen = static_cast<long>(e.contacts());
