@@ -39,6 +39,7 @@ void Engine::remove_grains(const std::function<bool(std::size_t)>& predicate) {
     rebuild_candidates();
     kernel_->carry_history();
     update_sleep();  // who is awake, in the new order
+    choose_reach();
     kernel_->rebuild_near();
     kernel_->write_records();
     travel_ = 0;

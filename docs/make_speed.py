@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/speed-against-error.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_speed.py [tradeoff] [threads] [sizes]
+    python3 docs/make_speed.py [tradeoff] [threads] [sizes] [lammps]
 
 Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` takes
 about an hour on two free cores, `threads` a minute once its bed is cached, `sizes` some minutes. Nothing else may run meanwhile.
@@ -27,6 +27,7 @@ TRADEOFF = ["tradeoff", "examples/01_linear_coupon.toml", "--around", "study", "
             "--set", 'numerics.reductions=["fines_cut", "shallow_bed", "strip_map"]', "--set", "numerics.time_step.rayleigh_fraction=0.2"]
 THREADS = ["bench", "--grains", "17000", "--threads", "1", "--threads", "2", "--state", "settled", "--state", "flowing", "--steps", "2000"]
 SIZES = ["bench", "--grains", "7000", "--grains", "20000", "--grains", "70000", "--grains", "200000", "--grains", "700000", "--threads", "1", "--steps", "100"]
+LAMMPS = ["crosscheck", "lammps", "examples/01_linear_coupon.toml", "--speed", "--full-width"]
 
 
 def answer(name, words):
@@ -34,7 +35,7 @@ def answer(name, words):
     if not os.path.exists(kept):
         os.makedirs(RUNS, exist_ok=True)
         command = [PROGRAM, *words, "--json"]
-        if words[0] == "tradeoff":
+        if words[0] != "bench":
             command += ["--force", "--out", os.path.join(RUNS, name)]
         print("running:", " ".join(command), file=sys.stderr, flush=True)
         done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE)
@@ -82,7 +83,16 @@ def bench_table(name, words, by):
     return "\n".join(rows)
 
 
-TABLES = {"tradeoff": tradeoff_table, "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
+def lammps_table():
+    a = answer("lammps", LAMMPS)
+    rows = [f"{shown(LAMMPS)} ({a['threads']} thread against {a['ranks']} rank of LAMMPS {a['lammps_version']}, {a['steps']} steps, {a['provenance']['instruction_set']}):\n",
+            "| state | grains | Gradwright, million grain-steps/s | LAMMPS | its best skin | ratio |", "|---|---|---|---|---|---|"]
+    for c in a["speed"]:
+        rows.append(f"| {c['name']} | {c['grains']} | {c['gradwright_grain_steps_per_second'] / 1e6:.1f} | {c['lammps_grain_steps_per_second'] / 1e6:.2f} | {c['lammps_best_skin_m'] * 1e6:.0f} um | {c['speed_ratio']:.1f} |")
+    return "\n".join(rows)
+
+
+TABLES = {"lammps": lammps_table, "tradeoff": tradeoff_table, "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
 
 
 def main():

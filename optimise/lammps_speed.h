@@ -15,7 +15,7 @@ struct EngineSpeedOptions {
     int threads = 1, ranks = 1;
     long steps = 1000;  ///< timed, after a tenth as many that are not
     /// LAMMPS runs once with each; its best counts [m].
-    std::vector<double> skins = {4e-6, 6e-6, 8e-6, 12e-6};
+    std::vector<double> skins = {1e-6, 2e-6, 4e-6, 8e-6, 12e-6};
     const std::atomic<bool>* stop = nullptr;
     std::function<void(const std::string& stage, double fraction)> progress;
 };

@@ -192,6 +192,12 @@ Wording wording(const Study& study, const StudyResult& result) {
                                   n >= 3 ? "the replicates"
                                          : "blocks along x, widened for the chance of a single bed (three "
                                            "beds would give them directly)");
+        if (std::all_of(result.confirmations.begin(), result.confirmations.end(),
+                        [](const Evaluation& one) { return one.every_grain; }))
+            words.sure +=
+                " Like powders between periodic sides move by one law at every y, so every laid grain was "
+                "read for "
+                "every y by where it came from; bins of their own grains agree with that.";
     } else {
         words.sure = "No confirming spread with both powders in it: every number here is a prediction.";
     }

@@ -417,6 +417,29 @@ TEST(study_warnings, name_doubtful_pairs_of_substrate_and_gap) {
     EXPECT_EQ(parsed("[process]\ngap = \"150 um\"\n").scene.gap, 150e-6);
 }
 
+TEST(reductions, reduced_is_the_set_with_its_time_step_and_gives_way_to_what_is_written) {
+    const auto study_of = [](const std::string& numerics) {
+        return parse_study(
+            std::string("[machine]\nuse = \"coupon-rig\"\n[powder.A]\nmaterial = \"SS17-4PH\"\n"
+                        "[powder.B]\nmaterial = \"IN718\"\n[target]\nshape = \"linear\"\n"
+                        "from = { y = \"0.4 mm\", gi = 0.0 }\nto = { y = \"1.2 mm\", gi = 1.0 }\n"
+                        "[numerics]\n") +
+                numerics,
+            "reduced.toml");
+    };
+    const Study set = study_of("reductions = \"reduced\"");
+    EXPECT_EQ(set.reductions, (std::vector<std::string>{kReduced.begin(), kReduced.end()}));
+    EXPECT_EQ(set.scene.rayleigh_fraction, kReducedRayleighFraction);
+    EXPECT_TRUE(set.scene.early_stop);
+    EXPECT_EQ(
+        study_of("reductions = \"reduced\"\ntime_step = { rayleigh_fraction = 0.1 }").scene.rayleigh_fraction,
+        0.1);
+    const Study list = study_of("reductions = [\"fines_cut\"]");
+    EXPECT_EQ(list.scene.rayleigh_fraction, 0.2);
+    EXPECT_FALSE(list.scene.early_stop);
+    EXPECT_THROW(study_of("reductions = \"fines_cut\""), InputError);
+}
+
 TEST(study_name, is_text_whatever_it_looks_like) {
     EXPECT_EQ(parsed("", {"study.name=\"<script>alert(1)</script>\""}).name, "<script>alert(1)</script>");
 }
@@ -425,16 +448,20 @@ TEST(study_name, is_text_whatever_it_looks_like) {
 // -----------------------------------------------------------------------------------------------------
 
 TEST(examples, are_sound_and_state_the_command_that_runs_them) {
-    for (const char* name : {"01_linear_coupon", "02_sigmoid_coupon", "03_paper_five_degrees"}) {
-        const fs::path file = kSource / "examples" / (std::string(name) + ".toml");
-        EXPECT_THAT(text_of(file).substr(0, 120), HasSubstr("./gradwright ")) << name;
-        EXPECT_THAT(text_of(file).substr(0, 120), HasSubstr(std::string("examples/") + name)) << name;
+    int studies = 0;
+    for (const auto& entry : fs::directory_iterator(kSource / "examples")) {
+        const std::string name = entry.path().stem().string();
+        if (entry.path().extension() != ".toml" || name == "materials") continue;
+        ++studies;
+        EXPECT_THAT(text_of(entry.path()).substr(0, 120), HasSubstr("./gradwright ")) << name;
+        EXPECT_THAT(text_of(entry.path()).substr(0, 120), HasSubstr("examples/" + name)) << name;
         try {
-            EXPECT_THAT(read_study(file.string()).warnings, IsEmpty()) << name;
+            EXPECT_THAT(read_study(entry.path().string()).warnings, IsEmpty()) << name;
         } catch (const InputError& error) {
             ADD_FAILURE() << report_of(error);
         }
     }
+    EXPECT_GE(studies, 9);
 }
 
 TEST(examples, ask_for_the_targets_of_the_two_coupons) {
