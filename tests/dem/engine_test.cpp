@@ -374,7 +374,7 @@ TEST(Lists, no_touching_pair_or_wall_contact_is_missed_however_fast_single_grain
     // A gas that drifts as a whole, a few grains thirty times as fast as the rest, over a plane that does not
     // move with it: what touches by brute force is what the law sees, step by step.
     EngineOptions o = bare();
-    const double box = 14 * kRadius, step = 0.1 * kStep;
+    const double box = 14 * kRadius, step = 0.5 * kStep;
     o.time_step = step;
     o.period_x = o.period_y = box;
     o.period_z = 0;
