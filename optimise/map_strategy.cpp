@@ -17,6 +17,9 @@ namespace gradwright {
 namespace {
 
 constexpr double kSignificance = 0.05;  // of the equality test that calls for a correction
+/// Of a tolerance: beyond this an undecided design is hardly good enough, and what its spread has taught is
+/// worth more than a second look at it.
+constexpr double kBorderline = 0.75;
 constexpr int kReserve =
     2;  // spreads that a motion search leaves for confirmations, where the budget has them
 
@@ -85,7 +88,10 @@ class MapStrategy {
             const bool profile_contradicts = round.p_value < kSignificance;
             const bool drift_contradicts =
                 round.drift_p_value < kSignificance && verdict_of(round.drift_misfit) != Verdict::met;
-            if (study_.design_space.partition_free && (profile_contradicts || drift_contradicts)) {
+            const bool borderline = round.verdict == Verdict::undecided && full_spreads_are_maps(round) &&
+                                    round.distance() > kBorderline;
+            if (study_.design_space.partition_free &&
+                (profile_contradicts || drift_contradicts || borderline)) {
                 run_.enter("correct");
                 ConfirmedDesign corrected = correct(round, profile_contradicts, drift_contradicts);
                 if (corrected.design.partition.points.empty()) return false;
@@ -315,12 +321,20 @@ class MapStrategy {
                 gate.difference, gate.noise, gate.p_value, gate.drift_p_value)});
     }
 
-    /// The next design after a spread that contradicted the map. Powders that move alike: the difference is
-    /// the beds' chance, and the full spread's origins go into the map, four strips' worth of them on the
-    /// coupon. Else manifold mapping: aim the map at target - (confirmed - map), so that map + discrepancy
-    /// meets the target; on like powders that would build half of one bed's chance into the partition.
+    /// Powders that move alike between periodic sides, level chambers: a spread's origins tell what a strip's
+    /// do.
+    bool full_spreads_are_maps(const ConfirmedDesign& round) const {
+        return alike_ && motion_.fill_fraction[0] == motion_.fill_fraction[1] && !round.layers.empty() &&
+               round.layers.front().periodic;
+    }
+
+    /// The next design after a spread that contradicted the map, or found its design hardly good enough.
+    /// Powders that move alike: the difference is the beds' chance, and the full spread's origins go into the
+    /// map, four strips' worth of them on the coupon. Else manifold mapping: aim the map at target -
+    /// (confirmed - map), so that map + discrepancy meets the target; on like powders that would build half
+    /// of one bed's chance into the partition.
     ConfirmedDesign correct(const ConfirmedDesign& round, bool profile, bool drift) {
-        if (alike_ && motion_.fill_fraction[0] == motion_.fill_fraction[1] && round.layers.front().periodic) {
+        if (full_spreads_are_maps(round)) {
             for (std::size_t k = 0; k < round.layers.size(); ++k)
                 run_.map.learn(motion_, round.layers[k], round.confirmations.at(k).state_hash);
             return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};

@@ -139,26 +139,6 @@ TEST(MapStrategy, a_spread_that_differs_from_the_map_is_corrected_until_it_meets
             EXPECT_EQ(confirmation.design.partition.points[k].y, result.design.partition.points[k].y);
 }
 
-TEST(MapStrategy, unlike_powders_that_move_alike_pass_the_gate_at_its_rate_and_like_ones_need_none) {
-    int passed = 0;
-    for (int seed = 1; seed <= 20; ++seed) {
-        Study study = coupon();
-        study.seed = seed;
-        study.max_spreads = 4;
-        study.design_space.knots = 2;  // the gate does not hang on the fit's skill
-        study.scene.powder[1].material.density *= 0.54;
-        Heap heap;
-        heap.bed_shift = 0.02;
-        const Outcome got = run(study, heap);
-        ASSERT_TRUE(got.result.powder_gate);
-        EXPECT_EQ(got.calls->map_seeds.size(), 2u);
-        EXPECT_NE(got.calls->map_seeds[0], got.calls->map_seeds[1]);  // a bed of its own
-        passed += got.result.powder_gate->passes;
-    }
-    EXPECT_GE(passed, 16);  // 19 expected; fewer than 16 has a chance of 3e-3
-    EXPECT_FALSE(run(coupon(), Heap{}).result.powder_gate);
-}
-
 TEST(MapStrategy, like_powders_that_differ_from_the_map_put_their_origins_into_it) {
     Study study = coupon();
     study.max_spreads = 5;
