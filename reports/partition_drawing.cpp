@@ -163,7 +163,7 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
             const double x = sx(at.x * 1e3), y = sy(at.y * 1e3);
             text(x, y + 1.6, side == 0 ? "A" : "B", "side",
                  fmt::format(R"(style="fill:{}")", side == 0 ? kBlue : "#9A6A00"));
-            text(x, y + 6, study_.scene.powder[side].material.name, "powder");
+            text(x, y + 6, chamber_name(study_, int(side)), "powder");
         }
     }
 
@@ -347,8 +347,8 @@ text{font-family:"Liberation Sans",Arial,Helvetica,sans-serif;fill:#111;font-siz
         text(left + 4, top + 25.5, fmt::format("made by gradwright, verdict: {}", to_string(result_.verdict)),
              "label");
         field(stop[0] + 3, 3.6, "machine", study_.machine_name, 44);
-        field(stop[0] + 3, 13.6, "A (left of the partition)", scene.powder[0].material.name, 44);
-        field(stop[0] + 3, 23.6, "B (right of the partition)", scene.powder[1].material.name, 44);
+        field(stop[0] + 3, 13.6, "A (left of the partition)", chamber_name(study_, 0), 44);
+        field(stop[0] + 3, 23.6, "B (right of the partition)", chamber_name(study_, 1), 44);
         field(stop[1] + 3, 3.6, "dosage", fmt::format("{:.3g}", result_.design.dosage_factor), 16);
         field(stop[1] + 3, 13.6, "fill A", fmt::format("{:.3g}", result_.design.fill_fraction[0]), 16);
         field(stop[1] + 3, 23.6, "fill B", fmt::format("{:.3g}", result_.design.fill_fraction[1]), 16);

@@ -165,6 +165,7 @@ json report_data(const Study& study, const StudyResult& result, const std::vecto
               {"losses", words.losses}}},
             {"materials",
              {{"A", study.scene.powder[0].material.name}, {"B", study.scene.powder[1].material.name}}},
+            {"chambers", {{"A", chamber_name(study, 0)}, {"B", chamber_name(study, 1)}}},
             {"bin_width_m", number(study.bins.width)},
             {"build", build_json(study, result)},
             {"plan", plan_json(study, result)},

@@ -129,6 +129,12 @@ std::vector<PartitionRow> partition_rows(const Study& study, const Design& desig
     return rows;
 }
 
+std::string chamber_name(const Study& study, int chamber) {
+    const double own = chamber == 0 ? study.scene.share_a[0] : 1 - study.scene.share_a[1];
+    const std::string& name = study.scene.powder[static_cast<std::size_t>(chamber)].material.name;
+    return own < 1 ? fmt::format("{:.3g} % {}", own * 100, name) : name;
+}
+
 std::string partition_name(const Design& design) {
     const std::string name = to_string(design.family);
     if (design.family == Family::sigmoid || design.family == Family::spline)
@@ -175,7 +181,9 @@ Wording wording(const Study& study, const StudyResult& result) {
             words.verdict += fmt::format(
                 " Judged in {} of {} bins: not beside the {}, nor where the study says don't care.", counting,
                 result.weight.size(),
-                study.scene.sides == Sides::periodic ? "periodic seam, where A meets B again" : "side walls");
+                study.scene.sides != Sides::periodic         ? "side walls"
+                : result.design.family == Family::two_curves ? "periodic seam"
+                                                             : "periodic seam, where A meets B again");
         words.verdict.front() = static_cast<char>(std::toupper(words.verdict.front()));
     }
     if (measured) {

@@ -38,6 +38,9 @@ struct PartitionRow {
 };
 std::vector<PartitionRow> partition_rows(const Study& study, const Design& design);
 
+/// Powder of chamber A (0) or B (1): "IN718", or "90 % IN718" of a premix.
+std::string chamber_name(const Study& study, int chamber);
+
 /// "polyline partition"; what its corners are where it is smooth, which powder stands between two curves.
 std::string partition_name(const Design& design);
 

@@ -132,7 +132,7 @@
         Plot.dot(shown, { x: "x", y: "y", r: 4, fill: "#fff", stroke: "#111", strokeWidth: 1.5 }),
         ...shown.map((c) => Plot.text([c], { x: "x", y: "y", text: "name", dy: -12, dx: (c.first || c.last) && c.x < 0.04 * L ? 12 : (c.first || c.last) && c.x > 0.96 * L ? -12 : 0, fontWeight: 650, fill: "#111", stroke: "#fff", strokeWidth: 4 })),
         ...["a", "b"].map((s) => plan["outline_" + s].length ? Plot.text([point(plan["centre_" + s])], { x: "x", y: "y", text: () => s.toUpperCase(), fontSize: 26, fontWeight: 700, fill: s === "a" ? blue : "#8f6200" }) : null),
-        ...["a", "b"].map((s) => plan["outline_" + s].length ? Plot.text([point(plan["centre_" + s])], { x: "x", y: "y", text: () => data.materials[s.toUpperCase()], dy: 20, fill: "#333" }) : null),
+        ...["a", "b"].map((s) => plan["outline_" + s].length ? Plot.text([point(plan["centre_" + s])], { x: "x", y: "y", text: () => (data.chambers ?? data.materials)[s.toUpperCase()], dy: 20, fill: "#333" }) : null),
         ...(plan.more_centres ?? []).map((c) => Plot.text([point(c.at)], { x: "x", y: "y", text: () => c.side.toUpperCase(), fontSize: 26, fontWeight: 700, fill: c.side === "a" ? blue : "#8f6200" })),
         Plot.arrow([0], { x1: L * 0.25, x2: L * 0.75, y1: W, y2: W, dy: -17, headLength: 9, strokeWidth: 2, stroke: "#111", insetEnd: 0 }),
         Plot.text([0], { x: L / 2, y: W, dy: -29, text: () => "spreading direction", fill: "#111" }),
