@@ -158,7 +158,7 @@ TEST(EndToEnd, a_light_powder_shows_in_the_confirmation_and_not_in_the_map) {
     EXPECT_TRUE(heavy.every_grain);
     Evaluation light;
     std::vector<GradationProfile> beds;
-    for (const int bed : {0, 1}) {
+    for (const int bed : {0, 1, 2}) {
         light = evaluate_once(unlike, along, Fidelity::full, confirmation_seed(like.seed, bed), options);
         ASSERT_TRUE(light.health.ok()) << light.health.reason;
         EXPECT_FALSE(light.every_grain);
