@@ -36,10 +36,15 @@ RunRecord record_of(const Study& study, const std::vector<std::string>& set, con
     record.fidelity = fidelity;
     record.budget = budget;
     for (const InputEntry& entry : study.inputs) record.inputs.emplace_back(entry.key, entry.value);
-    // A table lies in a file of its own, which may have changed.
+    // A table lies in a file of its own, which may have changed; its weights are zones.
     for (std::size_t k = 0; k < study.target.table_y.size(); ++k)
         record.inputs.emplace_back(fmt::format("target.table[{}]", k),
                                    fmt::format("{} {}", study.target.table_y[k], study.target.table_gi[k]));
+    for (std::size_t k = 0; k < study.target.zones.size(); ++k) {
+        const TargetZone& zone = study.target.zones[k];
+        record.inputs.emplace_back(fmt::format("target.zone[{}]", k),
+                                   fmt::format("{} {} {}", zone.y_low, zone.y_high, zone.weight));
+    }
     record.engine = fmt::format("format {}, {}", kEngineFormat, compiled_instruction_set());
     return record;
 }

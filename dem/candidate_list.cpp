@@ -199,8 +199,8 @@ void Engine::find_reachable_bodies() {
 
 // A grain sleeps when it and every near neighbour have been slower than sleep_speed for sleep_time; it wakes
 // when an awake near neighbour is faster than wake_speed or a moving body comes within its diameter. The wake
-// front runs one neighbour per refresh of the near list (about 10 m/s at the default time step), faster than
-// a disturbance travels in a softened bed.
+// front runs one neighbour per refresh of the near list, which comes the sooner the faster anything moves;
+// what sleep costs in GI is a level of its own in docs/speed-against-error.md ("without sleep").
 void Engine::update_sleep() {
     auto& s = state_;
     const std::size_t n = s.size();

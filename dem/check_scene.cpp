@@ -61,7 +61,7 @@ std::vector<SceneProblem> validate(const Scene& s) {
                          s.gap * um, 1.5 * d90 * um));
     if (const double edge = stability_edge_of(s.interaction); s.rayleigh_fraction > kStabilityEdge)
         fatal(step_advice(s.rayleigh_fraction, s.interaction));
-    // up to three quarters of it neither GI nor overlap change: docs/speed-against-error.md
+    // at three quarters of it GI is what it is in half steps, within the noise: docs/speed-against-error.md
     else if (s.rayleigh_fraction > 0.75 * edge * (1 + 1e-9))
         warn(fmt::format(
             "time step {:.2g} of Rayleigh's is {:.2g} times the stability edge, {:.2g} (measured "

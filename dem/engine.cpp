@@ -207,11 +207,13 @@ double Engine::memory_bytes() const {
     auto count = [&](const auto& v) { bytes += static_cast<double>(v.size() * sizeof(v[0])); };
     const_cast<State&>(state_).for_each_array(count);
     count(built_x_);
+    count(built_y_);
+    count(built_z_);
     count(reach_);
     count(wide_reach_);
     count(inverse_reach2_);
-    count(built_y_);
-    count(built_z_);
+    count(reachable_);
+    count(candidate_owner_);
     count(candidate_first_);
     count(candidate_);
     count(candidate_slot_);
@@ -273,7 +275,7 @@ long Engine::advance(long steps) {
                 kernel_->carry_history();
             }
             update_sleep();
-            choose_reach();  // in the new order, and with who has fallen asleep
+            if (rebuild || !lists_valid_) choose_reach();  // in the new order, and with who has fallen asleep
             const double middle = omp_get_wtime();
             times_.candidates += middle - start;
             kernel_->rebuild_near();

@@ -2,9 +2,9 @@
 // A step reads as named stages: touching pairs and walls -> contact law -> sums per grain -> integrate (->
 // refresh lists if moved).
 //
-// Two lists: candidates within `skin` (rebuilt with the cell order, about every 100-200 steps) and, of those,
-// the near pairs within `near_skin` (about every 20-30 steps), which are what the law sees; both skins are
-// what a pair of typical grains gets, fast ones get more (reach.cpp). A near pair keeps its place between
+// Two lists: candidates within `skin` (rebuilt with the cell order) and, of those, the near pairs within
+// `near_skin` (several times as often), which are what the law sees; both skins are what a pair of typical
+// grains gets, fast ones get more (reach.cpp). A near pair keeps its place between
 // refreshes, so that the law reads and writes its history in place and one grain's sums run over fixed slots
 // in fixed order: same bits on any number of threads, no atomics. (Measured alternative: test all candidates
 // every step and compress, see contact_list.cpp.)

@@ -18,10 +18,13 @@
 namespace gradwright {
 namespace {
 
+// Tried on a strip of the first example and on a sliding bed: near skins of 0.09 and 0.18 r instead of 0.12,
+// a longest reach of 6 with 50 steps, a widest of 2 skins, a margin of 1.6. None was faster than what stands
+// here beyond the 10 % by which the machine itself swings.
 constexpr double kMargin = 1.3;      // of reach over way in the time the list is meant to last: speeds change
 constexpr double kLongestReach = 4;  // in those of a typical grain
 constexpr double kLeastRoom = 0.35;  // of the wide reach, before the candidates are found anew
-constexpr double kLongestSteps = 32;  // the list lasts no longer: waking spreads one neighbour each time
+constexpr double kLongestSteps = 32;  // that a reach is planned for: longer ones only add pairs
 
 double length(double x, double y, double z) {
     return std::sqrt(x * x + y * y + z * z);

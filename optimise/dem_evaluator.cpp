@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "dem/homogeneous_estimator.h"
 #include "optimise/chamber_fill.h"
@@ -57,31 +58,31 @@ void DemEvaluator::read_profile(const Layer& layer, Evaluation& evaluation) cons
                        stray_labels(layer, design.partition, fill) <= kLabelsMayStray;
     if (!alike) return;
 
-    std::swap(evaluation.plain_check, evaluation.profile);
-    std::swap(evaluation.plain_check_drift, evaluation.drift);
+    Evaluation every;
     HomogeneousOptions options;
     options.resamples = kResamples;
     options.seed = evaluation.seed;
     const PooledGrains grains = pool_grains({&layer, 1}, footprint.x_low, footprint.x_high);
-    evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
-    evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
-    allow_for_beds(evaluation, kBedsOverBlocksMap);
-    fill.apply(evaluation.profile, evaluation.drift);
-    evaluation.every_grain = true;
+    every.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
+    every.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
+    allow_for_beds(every, kBedsOverBlocksMap);
+    fill.apply(every.profile, every.drift);
+
     const std::vector<double> weight = bin_weights(study_);
-    const double profile_p = agreement(evaluation.plain_check.gi, evaluation.plain_check.standard_error,
-                                       evaluation.profile.gi, weight);
-    const double drift_p =
-        agreement(evaluation.plain_check_drift.difference, evaluation.plain_check_drift.standard_error,
-                  evaluation.drift.difference, weight);
-    if (std::min(profile_p, drift_p) >= kSignificance / 2) return;  // two tests
-    evaluation.health.warnings.push_back(fmt::format(
-        "bins of their own grains contradict what all grains of the spread say (p = {:.2g}, drift {:.2g}): "
-        "transport depends on y; the wider error of the bins is quoted",
-        profile_p, drift_p));
-    std::swap(evaluation.plain_check, evaluation.profile);
-    std::swap(evaluation.plain_check_drift, evaluation.drift);
-    evaluation.every_grain = false;
+    const double profile_p =
+        agreement(evaluation.profile.gi, evaluation.profile.standard_error, every.profile.gi, weight);
+    const double drift_p = agreement(evaluation.drift.difference, evaluation.drift.standard_error,
+                                     every.drift.difference, weight);
+    evaluation.every_grain = std::min(profile_p, drift_p) >= kSignificance / 2;  // two tests
+    if (!evaluation.every_grain) {
+        evaluation.health.warnings.push_back(fmt::format(
+            "bins of their own grains contradict what all grains of the spread say (p = {:.2g}, drift "
+            "{:.2g}): transport depends on y; the wider error of the bins is quoted",
+            profile_p, drift_p));
+        return;
+    }
+    evaluation.plain_check = std::exchange(evaluation.profile, every.profile);
+    evaluation.plain_check_drift = std::exchange(evaluation.drift, every.drift);
 }
 
 Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {

@@ -23,7 +23,7 @@ struct Evaluation {
     XDrift drift;
     GradationMap map;  ///< full only; map: relabelled
     /// Plain bins of the same grains, a map's strips tiled over the width; empty where the profile is plain
-    /// bins itself and nothing else could be read.
+    /// bins itself.
     GradationProfile plain_check;
     XDrift plain_check_drift;            ///< and their drift
     bool every_grain = false;            ///< full only: every grain told of every y (dem_evaluator.h)

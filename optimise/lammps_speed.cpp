@@ -116,12 +116,14 @@ EngineSpeed run_engine_speed(const Scene& scene, const EngineSpeedOptions& optio
             engine.advance(500);
             if (options.progress) options.progress("set in motion", double(done) / kMostToSlide);
         }
+        if (flowing && sliding() < scene.blade_speed) {
+            out.health.status = "not_flowing";
+            out.health.reason = "the bed does not slide under ten times its weight: lower the friction";
+            return out;
+        }
         const fs::path folder = fs::path(options.folder) / one.name;
         fs::create_directories(folder);
         write_deck_file(folder / kLammpsBed, data_of(scene, stage, engine.state()));
-        write_deck_file(
-            folder / kLammpsDeck,
-            opening(deck, scene, flowing) + fmt::format("run {}\nrun {} pre no\n", warming, options.steps));
         for (const double skin : options.skins) {
             std::string text = opening(deck, scene, flowing);
             const std::size_t at = text.find("variable skin index"), end = text.find('\n', at);

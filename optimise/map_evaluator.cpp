@@ -219,8 +219,10 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
             describe_turnover(map, evaluation);
             const Layer whole = tiled(map.layers.front(), study_.dispenser_width);
             const std::vector<double> label = hard_labels(whole, design.partition);
-            const std::vector<double> density = {study_.scene.powder[0].material.density,
-                                                 study_.scene.powder[1].material.density};
+            std::vector<double> density;  // of what each chamber holds
+            for (const double share : fill.share_a)
+                density.push_back(share * study_.scene.powder[0].material.density +
+                                  (1 - share) * study_.scene.powder[1].material.density);
             evaluation.map = gradation_map(whole, label, density, study_.bins.width, study_.dispenser_width);
             evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
             for (double& s : evaluation.plain_check.standard_error)

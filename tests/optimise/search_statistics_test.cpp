@@ -6,23 +6,12 @@
 
 #include "optimise/design_run.h"
 #include "optimise/map_evaluator.h"
-#include "tests/optimise/synthetic_heap.h"
+#include "tests/optimise/map_run.h"
 
 namespace gradwright {
 namespace {
 
 using namespace testing_heap;
-
-struct Outcome {
-    StudyResult result;
-    std::shared_ptr<Calls> calls = std::make_shared<Calls>();
-};
-Outcome run(const Study& study, const Heap& heap, RunOptions options = {}) {
-    Outcome outcome;
-    options.spread = engine(heap, outcome.calls);
-    outcome.result = run_map_strategy(study, options);
-    return outcome;
-}
 
 TEST(SearchStatistics, unlike_powders_that_move_alike_pass_the_gate_at_its_rate_and_like_ones_need_none) {
     int passed = 0;
