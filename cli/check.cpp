@@ -10,6 +10,7 @@
 
 #include "cli/common.h"
 #include "optimise/design_run.h"
+#include "optimise/heap_order.h"
 #include "reports/json_support.h"
 #include "reports/result_json.h"
 
@@ -179,21 +180,36 @@ std::vector<std::string> all_warnings(const Study& study, const StudyEstimate& e
 StudyEstimate estimate(const Study& study, int threads) {
     const Design design = start_design(study);
     StudyEstimate result;
-    for (const bool strip : {true, false}) {
-        const Scene scene = scene_of(study, design, strip, study.seed);
+    struct Planned {
+        std::string name;
+        Scene scene;
+        int at_most;
+    };
+    std::vector<Planned> planned;
+    if (study.scale_up.on()) {
+        for (const auto& [length, dosage] : scale_up_plan(study, design.dosage_factor))
+            planned.push_back({fmt::format("strip {:.4g} mm, dosage {:.3g}", 1e3 * length, dosage),
+                               scaled_strip(study, length, dosage, study.seed), 1});
+    } else {
+        planned.push_back({"map strip", scene_of(study, design, true, study.seed), study.map_spreads});
+        planned.push_back({"full width", scene_of(study, design, false, study.seed),
+                           std::max(0, study.max_spreads - study.map_spreads)});
+    }
+    for (const auto& [name, scene, at_most] : planned) {
         SpreadEstimate spread;
-        spread.name = strip ? "map strip" : "full width";
+        spread.name = name;
         spread.cost = estimate_cost(scene);
         spread.seconds = spread.cost.grain_steps / (kAssumedSpeed * std::max(1, threads));
-        spread.at_most = strip ? study.map_spreads : std::max(0, study.max_spreads - study.map_spreads);
+        spread.at_most = at_most;
         spread.problems = validate(scene);
         result.seconds_at_most += spread.at_most * spread.seconds;
         result.memory_bytes = std::max(result.memory_bytes, spread.cost.memory_bytes);
         result.spreads.push_back(std::move(spread));
         result.gap = scene.gap;
-        result.dose_height = scene.dose_height;
-        result.supply_ratio = supply_ratio(scene, kAssumedBedPacking, study.steady_packing);
     }
+    const Scene own = scene_of(study, design, true, study.seed);
+    result.dose_height = own.dose_height;
+    result.supply_ratio = supply_ratio(own, kAssumedBedPacking, study.steady_packing);
     const DesignSpace& space = study.design_space;
     result.partition_variables = free_count(space);
     result.motion_variables = int(space.dosage_factor.free) + int(space.land.free) +

@@ -1,5 +1,6 @@
 // What can be said of a scene before anything runs: problems, warnings, cost.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,6 +98,16 @@ std::vector<SceneProblem> validate(const Scene& s) {
                         "its collapse is *not simulated* "
                         "at full depth; raise numerics.bed_depth",
                         s.plate_thickness * 1e3, s.dispenser_depth * 1e3, s.bed_depth * 1e3));
+    if (std::none_of(out.begin(), out.end(), [](const SceneProblem& p) { return p.fatal; })) {
+        const double needed = estimate_cost(s).memory_bytes;
+        const double there = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+        if (needed > there)
+            fatal(
+                fmt::format("some {:.1e} grains need {:.0f} GB of memory, this computer has {:.0f}: shorten "
+                            "the dispenser, or have "
+                            "the machine extrapolated from strips, [scale_up] in the study",
+                            estimate_cost(s).grains, needed / 1e9, there / 1e9));
+    }
     return out;
 }
 

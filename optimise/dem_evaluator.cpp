@@ -91,6 +91,15 @@ Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
     evaluation.design = design;
     evaluation.fidelity = Fidelity::full;
     evaluation.seed = seed;
+    if (study_.scale_up.on()) {
+        evaluation.health.status = "invalid";
+        evaluation.health.reason =
+            "a study with [scale_up] is too long to be spread: it has the fidelities kinematic and map; "
+            "leave "
+            "[scale_up] out to spread it all the same";
+        judge(study_, evaluation);
+        return evaluation;
+    }
     last_ = runner_.spread(scene, &design.partition, fmt::format("full spread {}", runner_.full_spreads + 1),
                            runner_.options().snapshots);
     copy_health(last_, evaluation);

@@ -101,6 +101,7 @@ Evaluation MapEvaluator::with_powder_b(const Design& design) {
 }
 
 void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed, int count, int powder) {
+    if (study_.scale_up.on()) return extrapolate(map, design);
     map.health.status = "ok";
     Design level = design;
     // Without labels there are no chambers: a level step would follow the partition, so the map takes the
@@ -143,6 +144,23 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
             "the map was spread with level chambers: what unequal fills lay is reckoned from it by their "
             "shares "
             "of the dose, and the step between the levels is only in the confirmation");
+    map.average();
+}
+
+void MapEvaluator::extrapolate(OriginMap& map, const Design& design) {
+    map.heap = scale_up(study_, design, runner_);
+    const ScaledHeap& heap = *map.heap;
+    map.health = heap.health;
+    map.grains = heap.grains;
+    map.steps = heap.steps;
+    map.grain_steps = heap.grain_steps;
+    map.seconds = heap.seconds;
+    map.seconds_cold = heap.seconds_cold;
+    map.state_hash = heap.state_hash;
+    map.scene = scene_of(study_, design, true, study_.seed);
+    map.seed = study_.seed;
+    if (!map.health.ok()) return;
+    map.layers = {mixed_layer(study_, design, heap)};
     map.average();
 }
 
@@ -206,14 +224,19 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high);
         evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
         evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
-        if (!grains.replicates()) allow_for_beds(evaluation, kBedsOverBlocksMap);
+        if (map.heap)
+            carry_extrapolation(*map.heap, evaluation);
+        else if (!grains.replicates())
+            allow_for_beds(evaluation, kBedsOverBlocksMap);
         const ChamberFill fill = chamber_fill(study_, design);
         fill.apply(evaluation.profile, evaluation.drift);
         Footprint in_strip = footprint;
         in_strip.y_low = 0;
         for (const Layer& layer : map.layers) {
             in_strip.y_high = layer.width;
-            evaluation.coverage += coverage(layer, in_strip) / double(map.layers.size());
+            // the grains of a mixed layer are samples: how they cover is known from the strips
+            evaluation.coverage += (map.heap ? map.heap->nearest().coverage : coverage(layer, in_strip)) /
+                                   double(map.layers.size());
         }
         if (quoted) {
             describe_turnover(map, evaluation);
@@ -235,10 +258,11 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         }
     }
     judge(study_, evaluation);
+    if (map.heap && evaluation.health.ok()) judge_as_one(evaluation);
     evaluation.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     evaluation.seconds_cold = evaluation.seconds;
     if (!map.told) {
-        evaluation.spreads = int(map.layers.size());
+        evaluation.spreads = map.heap ? int(map.heap->strips.size()) : int(map.layers.size());
         evaluation.seconds += map.seconds;
         evaluation.seconds_cold += map.seconds_cold;
         map.told = true;

@@ -4,8 +4,10 @@
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
+#include "optimise/heap_order.h"
 #include "optimise/journal.h"
 #include "optimise/spread_runner.h"
 
@@ -25,6 +27,9 @@ struct OriginMap {
     std::string state_hash;
     /// Sets the means from the layers.
     void average();
+    /// A machine extrapolated from strips: the layers are one of a fully mixed heap, and its errors are
+    /// carried.
+    std::optional<ScaledHeap> heap;
     bool told = false;  ///< its spreads and their time have been handed out with an evaluation
 };
 
@@ -63,6 +68,8 @@ class MapEvaluator : public Evaluator {
     Journal* journal_;
     /// Spreads `count` strips into the map; `powder`: in every grain.
     void fill(OriginMap& map, const Design& design, std::uint64_t seed, int count, int powder);
+
+    void extrapolate(OriginMap& map, const Design& design);
 
     std::map<Key, OriginMap> maps_, maps_b_;
 };

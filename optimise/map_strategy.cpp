@@ -70,6 +70,7 @@ class MapStrategy {
         run_.enter("fit");
         if (!place_partition({})) return run_.fail("No partition could be fitted: " + fit_message_);
         stated_comparisons();
+        if (map.heap) return run_.finish_extrapolated(predicted_, *map.heap);
         hold_powders_apart();
 
         std::vector<ConfirmedDesign> rounds = {unconfirmed(predicted_)};

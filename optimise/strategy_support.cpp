@@ -143,6 +143,43 @@ StudyResult StrategyRun::fail(const std::string& reason) {
     return std::move(result);
 }
 
+StudyResult StrategyRun::finish_extrapolated(const Evaluation& predicted, const ScaledHeap& heap) {
+    close();
+    result.design = predicted.design;
+    result.predicted = predicted;
+    result.extrapolated = heap;
+    result.misfit = predicted.misfit;
+    result.drift_misfit = predicted.drift_misfit;
+    result.verdict = combine(verdict_of(result.misfit), verdict_of(result.drift_misfit));
+    result.capture_fraction = predicted.capture_fraction;
+    result.supply_ratio = predicted.supply_ratio;
+    result.coverage = predicted.coverage;
+    result.waste_fraction = predicted.waste_fraction;
+    result.packing_fraction = predicted.packing_fraction;
+    const double factor = common_factor(predicted.profile.degrees);
+    for (std::size_t b = 0; b < predicted.profile.gi.size(); ++b) {
+        const double gi = predicted.profile.gi[b], half = factor * predicted.profile.standard_error[b];
+        result.band_low.push_back(std::max(0.0, gi - half));
+        result.band_high.push_back(std::min(1.0, gi + half));
+    }
+    if (!moves_alike(study))
+        result.warnings.push_back(
+            "powders A and B are unlike, and the strips hold powder A alone: how they part on the way is not "
+            "in the "
+            "band");
+    result.termination = runner.stopped() ? "interrupted" : "converged";
+    result.message = fmt::format(
+        "Extrapolated from {} strips of up to {:.3g} mm: misfit {}, x drift {}. No bed of this size was "
+        "spread.",
+        heap.strips.size(), 1e3 * heap.longest, with_interval(result.misfit),
+        with_interval(result.drift_misfit));
+    if (result.verdict == Verdict::undecided)
+        result.message +=
+            " Longer strips in scale_up.lengths narrow the band, and so does a land along which the heap "
+            "turns over more often.";
+    return std::move(result);
+}
+
 StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
     const auto best = std::max_element(rounds.begin(), rounds.end(),
                                        [](const auto& a, const auto& b) { return better(b, a); });

@@ -31,6 +31,9 @@ class StrategyRun {
     void confirm_until_decided(ConfirmedDesign& round);
     /// Sets design, verdict, profiles, bands and sums from the best of the rounds, and closes the account.
     StudyResult finish(const std::vector<ConfirmedDesign>& rounds);
+    /// For a machine that cannot be spread: the verdict is the prediction's, with the errors of the
+    /// extrapolation in it.
+    StudyResult finish_extrapolated(const Evaluation& predicted, const ScaledHeap& heap);
     StudyResult fail(const std::string& reason);
 
     const Study study;  ///< a copy: budgets may have been cut, see given_used

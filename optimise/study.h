@@ -88,6 +88,13 @@ inline constexpr std::array<const char*, 4> kReduced = {"fines_cut", "shallow_be
                                                         "early_stop"};
 inline constexpr double kReducedRayleighFraction = 0.3;
 
+/// Strips from which a machine too long to be spread is extrapolated (heap_order.h). Empty: spread as it is.
+struct ScaleUp {
+    std::vector<double> lengths;         ///< of the strips' dispensers [m], three or more
+    std::vector<double> dosage_factors;  ///< also spread, at the middle length
+    bool on() const { return !lengths.empty(); }
+};
+
 struct Study {
     std::string name;  ///< file stem, or [study] name
     std::string file;  ///< path as given
@@ -112,6 +119,7 @@ struct Study {
     std::uint64_t seed = 1;
     int map_spreads = 1;                ///< strips pooled in the map
     int max_spreads = 4;                ///< budget: map + full
+    ScaleUp scale_up;                   ///< [scale_up]
     std::vector<InputEntry> inputs;     ///< every value, given or default
     std::vector<std::string> warnings;  ///< found while reading
 };

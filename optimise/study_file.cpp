@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "optimise/heap_order.h"
 #include "optimise/joined.h"
 #include "optimise/partition_section.h"
 #include "optimise/scene_file.h"
@@ -25,9 +26,9 @@ std::string mm(double si) {
     return format_quantity(si, "length");
 }
 
-const std::array<std::string, 10> kSections = {"study",       "machine", "process",      "powder",
+const std::array<std::string, 11> kSections = {"study",       "machine", "process",      "powder",
                                                "interaction", "target",  "design_space", "objective",
-                                               "numerics",    "run"};
+                                               "numerics",    "run",     "scale_up"};
 
 // --- design space
 // ---------------------------------------------------------------------------------------------------
@@ -162,6 +163,49 @@ void read_run(TomlReader& reader, Section& root, Study& study) {
     study.scene.seed = study.seed;
 }
 
+/// [scale_up]: the machine is not spread but extrapolated from strips.
+void read_scale_up(TomlReader& reader, Section& root, Study& study) {
+    if (!root.has("scale_up")) {
+        root.know("scale_up");
+        return;
+    }
+    Section section = root.sub("scale_up");
+    const double length = study.scene.dispenser_length;
+    std::vector<double> lengths =
+        section.quantities("lengths", "length", {1.6e-3, 3.2e-3, 6.4e-3, 12.8e-3},
+                           "our default: five to ten minutes on two cores", 3, Range::above_to(0, 10));
+    const double own = study.design_space.dosage_factor.value;
+    std::vector<double> dosages = section.quantities("dosage_factors", "", {own, own / 1.5, own * 1.5},
+                                                     "the study's own, two thirds and one and a half of it",
+                                                     1, Range::above_to(0, 100));
+    section.finish();
+    if (reader.sound({"scale_up.lengths", "machine.dispenser"}))
+        for (const double strip : lengths)
+            if (strip >= length)
+                reader.conflict({"scale_up.lengths"},
+                                fmt::format("{} is no shorter than the dispenser, {}", mm(strip), mm(length)),
+                                "leave it out; a dispenser that can be spread needs no [scale_up]");
+    for (const Variable* motion :
+         {&study.design_space.dosage_factor, &study.design_space.land, &study.design_space.footprint_offset})
+        if (motion->free)
+            reader.conflict(
+                {"design_space." + motion->name},
+                "must not be free beside [scale_up]: an extrapolated machine is designed at one motion",
+                "give it one value");
+    for (const int i : {0, 1})
+        if (study.design_space.fill_fraction[i].free || study.design_space.fill_fraction[i].value != 1)
+            reader.conflict(
+                {i == 0 ? "design_space.fill_fraction.A" : "design_space.fill_fraction.B"},
+                "must be 1 beside [scale_up]: an extrapolated machine is designed with full chambers",
+                "fill both to 1");
+    study.scale_up = {lengths, dosages};
+    // what the law is fitted to is not a search that could be cut short
+    const auto plan = scale_up_plan(study, own);
+    study.max_spreads = std::max(study.max_spreads, int(plan.size()));
+    reader.amend("run.max_spreads", fmt::format("{}", study.max_spreads), "derived",
+                 "as many as scale_up asks for");
+}
+
 void warn_of_estimates(TomlReader& reader, Study& study) {
     std::vector<std::string> estimated;
     for (const InputEntry& entry : reader.inputs())
@@ -220,6 +264,7 @@ Study parse_study(const std::string& text, const std::string& file_name,
     read_design_space(reader, root, study);
     read_objective(root, study);
     read_run(reader, root, study);
+    read_scale_up(reader, root, study);
     root.finish();
     if (!reader.problems().empty()) {
         std::stable_sort(reader.problems().begin(), reader.problems().end(),

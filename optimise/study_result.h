@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "optimise/evaluation.h"
+#include "optimise/heap_order.h"
 #include "optimise/powder_gate.h"
 
 namespace gradwright {
@@ -34,7 +35,8 @@ struct StudyResult {
         band_high;                       ///< per bin; simultaneous 95 % band of the confirmed profile
     std::optional<Evaluation> straight;  ///< the best straight partition on the same map: stated comparison
     std::optional<Evaluation> kinematic;
-    std::optional<PowderGate> powder_gate;  ///< unlike powders only
+    std::optional<PowderGate> powder_gate;   ///< unlike powders only
+    std::optional<ScaledHeap> extrapolated;  ///< studies with [scale_up]: what the numbers rest on
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0,
            waste_a_share = 0;
     int spreads_map = 0, spreads_full = 0;

@@ -142,6 +142,11 @@ class Section {
     std::pair<double, double> pair(const std::string& key, const std::string& dimension,
                                    std::pair<double, double> fallback, const std::string& note,
                                    const Range& range);
+    /// A list of quantities, all different, in the order given; `fallback` is used and noted when there is
+    /// none.
+    std::vector<double> quantities(const std::string& key, const std::string& dimension,
+                                   const std::vector<double>& fallback, const std::string& note,
+                                   std::size_t at_least, const Range& range);
     /// [["0 mm", "0.4 mm"], ...] of plan points.
     std::vector<PlanPoint> points(const std::string& key, std::size_t at_least);
     /// A list of names, or the single word `set_name` for all of `set`.

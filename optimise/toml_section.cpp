@@ -340,6 +340,44 @@ Variable Section::variable(const std::string& key, const std::string& name, cons
     return result;
 }
 
+std::vector<double> Section::quantities(const std::string& key, const std::string& dimension,
+                                        const std::vector<double>& fallback, const std::string& note,
+                                        std::size_t at_least, const Range& range) {
+    const auto shown = [&](const std::vector<double>& values) {
+        std::vector<std::string> texts;
+        for (const double value : values) texts.push_back(format_quantity(value, dimension));
+        return joined(texts);
+    };
+    const TomlReader::Found found = find(key);
+    if (!found.node) {
+        reader_.record({path(key), shown(fallback), "", "default", note});
+        return fallback;
+    }
+    const std::string sample = dimension.empty() ? format_quantity(fallback.front(), dimension)
+                                                 : "\"" + format_quantity(fallback.front(), dimension) + "\"";
+    const toml::array* array = found.node->as_array();
+    if (!array || array->size() < at_least) {
+        problem(found, key, fmt::format("must be a list of at least {}", at_least),
+                fmt::format("such as [{}, ...]", sample));
+        return fallback;
+    }
+    std::vector<double> result;
+    for (const toml::node& item : *array) {
+        TomlReader::Found at = found;
+        at.node = &item;
+        if (found.line > 0) at.line = static_cast<int>(item.source().begin.line);
+        const auto value = value_of(at, item, key, dimension, range, sample);
+        if (!value) return fallback;
+        if (std::find(result.begin(), result.end(), *value) != result.end()) {
+            problem(at, key, "is in the list twice", "leave it out");
+            return fallback;
+        }
+        result.push_back(*value);
+    }
+    reader_.record({path(key), node_text(*found.node), "", found.origin, found.note});
+    return result;
+}
+
 std::vector<PlanPoint> Section::points(const std::string& key, std::size_t at_least) {
     const TomlReader::Found found = find(key);
     if (!found.node) return {};

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "reports/heap_order_figure.h"
 #include "reports/html_report.h"
 #include "reports/map_file.h"
 #include "reports/particle_file.h"
@@ -36,6 +37,7 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
     std::vector<std::string> files = {"result.json",    "results.h5",    "report.html", "report_data.json",
                                       "partition.json", "partition.svg", "study.toml"};
     if (!map.gi.empty()) files.push_back("gi_map.vtkhdf");
+    if (result.extrapolated) files.push_back("heap_order.svg");
     for (std::size_t i = 0; i < result.snapshots.size(); ++i)
         files.push_back(fmt::format("particles_{:04}.vtkhdf", i));
     if (!result.snapshots.empty()) files.push_back("particles.vtkhdf.series");
@@ -44,6 +46,7 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
     write_file(in_folder("result.json"), text_of(to_json(study, result, files), 2));
     write_file(in_folder("partition.json"), text_of(partition_json(study, result), 2));
     write_file(in_folder("partition.svg"), partition_svg(study, result));
+    if (result.extrapolated) write_file(in_folder("heap_order.svg"), heap_order_svg(*result.extrapolated));
     write_results_file(study, result, in_folder("results.h5"));
     if (!map.gi.empty())
         write_map_file(map, scene_of(study, result.design, false, result.seed).gap,

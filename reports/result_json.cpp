@@ -161,6 +161,40 @@ json gate_json(const std::optional<PowderGate>& gate) {
             {"drift_p_value", number(gate->drift_p_value)}};
 }
 
+json extrapolated_json(const std::optional<ScaledHeap>& heap) {
+    if (!heap) return nullptr;
+    auto strips = json::array();
+    for (const HeapOrder& strip : heap->strips)
+        strips.push_back({{"dispenser_length_m", number(strip.dispenser_length)},
+                          {"dosage_factor", number(strip.dosage_factor)},
+                          {"turnovers", number(strip.turnovers)},
+                          {"profile_order", number(strip.profile)},
+                          {"profile_rest", number(strip.profile_rest)},
+                          {"drift_order", number(strip.drift)},
+                          {"lateral", number(strip.lateral)},
+                          {"capture_fraction", number(strip.capture_fraction)},
+                          {"seed", strip.seed},
+                          {"grains", strip.grains},
+                          {"seconds_cold", number(strip.seconds_cold)}});
+    const OrderLaw& law = heap->law;
+    return {{"strips", strips},
+            {"law",
+             {{"form", "amplitude exp(-N / memory) cos(2 pi N / turn + phase)"},
+              {"fitted", law.fitted},
+              {"amplitude", number(law.fitted ? law.amplitude : kUndefined)},
+              {"memory", number(law.fitted ? law.memory : kUndefined)},
+              {"turn", number(law.fitted ? law.turn : kUndefined)},
+              {"phase", number(law.fitted ? law.phase : kUndefined)},
+              {"collapse_error", number(law.fitted ? law.collapse_error : kUndefined)},
+              {"longest_miss", number(law.longest_miss)},
+              {"longest_envelope", number(law.longest_envelope)}}},
+            {"turnovers", number(heap->turnovers)},
+            {"longest_strip_m", number(heap->longest)},
+            {"profile_error", number(heap->profile_error)},
+            {"drift_error", number(heap->drift_error)},
+            {"rests_on", heap->rests_on}};
+}
+
 json beds_json(const StudyResult& result) {
     auto rows = json::array();
     for (const BedFacts& bed : result.beds)
@@ -275,6 +309,7 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
             {"confirmations", confirmations},
             {"straight", result.straight ? evaluation_summary(study, *result.straight) : json(nullptr)},
             {"powder_gate", gate_json(result.powder_gate)},
+            {"extrapolated", extrapolated_json(result.extrapolated)},
             {"kinematic", result.kinematic ? evaluation_summary(study, *result.kinematic) : json(nullptr)},
             {"beds", beds_json(result)},
             {"history", history_json(result)},

@@ -87,7 +87,8 @@ std::string summary(const Study& study, const StudyResult& result, const std::st
         text += profile_table(result.confirmed, result.target, &result.predicted.profile, result.band_low,
                               result.band_high, "confirmed");
     else if (!result.predicted.profile.gi.empty())
-        text += profile_table(result.predicted.profile, result.target, nullptr, {}, {}, "predicted");
+        text += profile_table(result.predicted.profile, result.target, nullptr, result.band_low,
+                              result.band_high, "predicted");
     if (result.straight && result.straight->health.ok())
         text += fmt::format(
             "\n  straight  the best straight partition on the same map: misfit {:.3f}, x drift {:.3f}\n",

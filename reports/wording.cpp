@@ -157,21 +157,23 @@ Wording wording(const Study& study, const StudyResult& result) {
                 ? fmt::format("The search ended without a measured gradation ({}).", result.termination)
                 : result.message;
     } else {
-        const std::string source = proved ? "confirmed" : "predicted (not confirmed)";
+        const std::string source = proved                ? "confirmed"
+                                   : result.extrapolated ? "extrapolated"
+                                                         : "predicted (not confirmed)";
         const std::string misfit = margin((source + " " + name).c_str(), result.misfit);
         const std::string drift = margin("x drift", result.drift_misfit);
         switch (result.verdict) {
             case Verdict::met:
                 words.state = "met";
-                words.headline = "Target met";
+                words.headline = result.extrapolated ? "Target met, extrapolated" : "Target met";
                 break;
             case Verdict::not_met:
                 words.state = "not_met";
-                words.headline = "Target not met";
+                words.headline = result.extrapolated ? "Target not met, extrapolated" : "Target not met";
                 break;
             case Verdict::undecided:
                 words.state = "undecided";
-                words.headline = "Undecided";
+                words.headline = result.extrapolated ? "Undecided, extrapolated" : "Undecided";
                 break;
         }
         words.verdict = fmt::format("{}; {}.", misfit, drift);
@@ -206,6 +208,14 @@ Wording wording(const Study& study, const StudyResult& result) {
                 " Like powders between periodic sides move by one law at every y, so every laid grain was "
                 "read for "
                 "every y by where it came from; bins of their own grains agree with that.";
+    } else if (result.extrapolated) {
+        const ScaledHeap& heap = *result.extrapolated;
+        words.sure = fmt::format(
+            "Extrapolated from {} strips, the longest {} mm of dispenser; no bed of this size was spread. "
+            "Carried in "
+            "every band: {:.3f} in GI, {:.3f} in x drift (rms along a ramp). It rests on: {}.",
+            heap.strips.size(), millimetres(heap.longest), heap.profile_error, heap.drift_error,
+            fmt::join(heap.rests_on, "; "));
     } else {
         words.sure = "No confirming spread with both powders in it: every number here is a prediction.";
     }

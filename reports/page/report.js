@@ -57,6 +57,7 @@
         if (!svg.getAttribute("aria-label")) { svg.setAttribute("role", "img"); svg.setAttribute("aria-label", item.title); }
     }
   }
+  const heap = result.extrapolated;
   const style = { fontSize: "12px", background: "none", overflow: "visible" };
   const section = (id, title, ...children) => page.append(h("h2", { id }, title), ...children);
 
@@ -231,11 +232,34 @@
 
   section("figures", "Gradation", h("div", { class: "grid" },
     figure("w12", "From the partition to the layer", "Plan view to scale: chambers A (blue) and B (orange) in the dispenser, the land that the blade crosses, and the GI of the layer on the platform. Dashed: the part's footprint, where everything is judged.", whole_plan),
-    bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
+    bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : heap ? "Predicted for a fully mixed heap; boxes: the 95 % band with what the extrapolation carries. No bed of this size was spread." : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
     bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third; the 95 % error bars hold for all bins together; shaded: tolerance (on the rms over the bins).", drift_figure) : null,
     map ? figure("w6", "GI over the platform", `Cells of ${mm(map.x_m.length > 1 ? map.x_m[1] - map.x_m[0] : null)} mm, ${map.of}. Dashed: the part's footprint. Grey: no powder.`, map_figure) : null,
     origin ? figure("w6", "Where the powder comes from", `Share of the laid solid by place in the dispenser and on the platform (${origin.layers} map layer${origin.layers === 1 ? "" : "s"}). A layer that takes the same mixture of places at every x has no drift.`, origin_figure) : null,
-    origin ? figure("w12", "W(origin): the dispenser's share in the part", "Solid laid in the footprint that came from before x. The straight line would be a dispenser emptied evenly; the partition's first guess is read from this curve.", cumulative_figure) : null));
+    origin ? figure("w12", "W(origin): the dispenser's share in the part", "Solid laid in the footprint that came from before x. The straight line would be a dispenser emptied evenly; the partition's first guess is read from this curve.", cumulative_figure) : null,
+    heap ? figure("w12", "How the heap forgets the order of the dispenser", `Dots: strips, by length and dosage. Line: the fitted law; shaded: its envelope, which the machine carries because the phase so far out is not known. ${heap.law.fitted ? `Scatter of the strips about the law: ${gi(heap.law.collapse_error)}.` : "Too few strips for a law."}`, heap_figure,
+      h("details", {}, h("summary", {}, "What this rests on"), h("ul", {}, heap.rests_on.map((line) => h("li", {}, line))))) : null));
+
+  // Order (rms error of the fully mixed picture) of every strip against its turnovers, with the law, out to the machine.
+  function heap_figure(width) {
+    const law = heap.law, top = 1.06 * heap.turnovers, steps = d3.range(1, top, top / 240);
+    const envelope = (n) => law.amplitude * Math.exp(-n / law.memory), at = (n) => envelope(n) * Math.cos((2 * Math.PI * n) / law.turn + law.phase);
+    const reach = 1.25 * d3.max(heap.strips, (s) => Math.abs(s.profile_order));
+    return Plot.plot({
+      width, height: Math.max(240, Math.min(320, width * 0.36)), marginLeft: 48, marginRight: 16, marginBottom: 42, style, grid: true,
+      x: { domain: [0, top], label: "turnovers of the heap, N = √(dispenser length / dose)" },
+      y: { domain: [-reach, reach], label: "order left in the layer (GI)", clamp: true },
+      marks: [
+        law.fitted ? Plot.areaY(steps, { x: (n) => n, y1: (n) => -envelope(n), y2: envelope, fill: "#5b6b7b", fillOpacity: 0.15, clip: true }) : null,
+        Plot.ruleY([0], { stroke: "#888" }),
+        law.fitted ? Plot.line(steps, { x: (n) => n, y: at, stroke: "#5b6b7b", strokeWidth: 2, clip: true }) : null,
+        Plot.ruleX([heap.turnovers], { stroke: green, strokeWidth: 2, strokeDasharray: "5 4" }),
+        Plot.text([heap.turnovers], { x: (n) => n, y: 0.9 * reach, text: () => "this machine", textAnchor: "end", dx: -6, fill: green }),
+        Plot.dot(heap.strips, { x: "turnovers", y: "profile_order", r: 5, fill: "#111", stroke: "#fff", title: (s) => `${mm(s.dispenser_length_m)} mm, dosage ${s.dosage_factor.toFixed(2)}: ${s.profile_order.toFixed(3)}` }),
+        Plot.text(heap.strips, { x: "turnovers", y: "profile_order", text: (s) => `${+(1e3 * s.dispenser_length_m).toFixed(1)} mm × ${+s.dosage_factor.toFixed(1)}`, textAnchor: "start", dx: 9, fontSize: 11 }),
+      ].filter((m) => m),
+    });
+  }
 
   function origin_figure(width) {
     const n = origin.cells, L = origin.dispenser_length_m * 1e3, P = origin.platform_length_m * 1e3;

@@ -342,6 +342,18 @@ TEST_F(Spread, each_material_of_the_scene_has_its_own_mass_and_stiffness_in_the_
     EXPECT_NEAR(engine.pair_constants(0, 0).e_star * 2 * 0.91 / 210e5, 1, 1e-12);
 }
 
+TEST(SceneChecks, more_grains_than_the_memory_holds_are_refused_before_they_are_made) {
+    Scene scene = tiny_scene();
+    const auto refused = [](const Scene& of) {
+        for (const SceneProblem& problem : validate(of))
+            if (problem.fatal && problem.text.find("GB of memory") != std::string::npos) return true;
+        return false;
+    };
+    EXPECT_FALSE(refused(scene));
+    scene.dispenser_length = scene.platform_length = scene.width = 10;  // 1e12 grains
+    EXPECT_TRUE(refused(scene));
+}
+
 TEST(Reductions, coarse_grains_keep_the_plan_and_scale_what_stands_upright) {
     const Scene fine = tiny_scene();
     const Scene coarse = coarse_grained(fine, 1.5);

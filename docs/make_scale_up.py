@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Writes the tables of docs/scale-up.md from runs of the program. Usage, from the project's root:
+
+    python3 docs/make_scale_up.py [machine] [check]
+
+`machine` designs the example (about ten minutes on two cores), `check` does so with one strip of twice the longest (about
+twenty more). Answers are kept in runs/scale-up/; delete one to measure it again. GRADWRIGHT in the environment names another
+program than ./gradwright. Needs nothing but Python's standard library.
+"""
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+RUNS = os.path.join(ROOT, "runs", "scale-up")
+PAGE = os.path.join(ROOT, "docs", "scale-up.md")
+PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
+MACHINE = ["design", "examples/05_machine_bed.toml"]
+CHECK = [*MACHINE, "--set", 'scale_up.lengths=["1.6 mm", "3.2 mm", "6.4 mm", "12.8 mm", "25.6 mm"]']
+
+
+def answer(name, words):
+    out = os.path.join(RUNS, name)
+    kept = os.path.join(out, "result.json")
+    if not os.path.exists(kept):
+        os.makedirs(RUNS, exist_ok=True)
+        command = [PROGRAM, *words, "--force", "--out", out]
+        print("running:", " ".join(command), file=sys.stderr, flush=True)
+        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
+        if done.returncode not in (0, 4):
+            sys.exit(f"ended with exit code {done.returncode}")
+    with open(kept) as file:
+        return json.load(file), out
+
+
+def shown(words):
+    return "`./gradwright " + " ".join(shlex.quote(w) for w in words) + "`"
+
+
+def law_line(heap):
+    law = heap["law"]
+    return (f"amplitude {law['amplitude']:.2f}, memory {law['memory']:.1f} turnovers, one turn in {law['turn']:.1f}; collapse error "
+            f"{law['collapse_error']:.3f}; the longest strip by the law of the shorter ones: off by {law['longest_miss']:+.3f}, inside an "
+            f"envelope of {law['longest_envelope']:.3f}. Carried to {heap['turnovers']:.1f} turnovers: {heap['profile_error']:.3f} in GI, "
+            f"{heap['drift_error']:.3f} in x drift.")
+
+
+def strips_table(name, words):
+    a, out = answer(name, words)
+    heap = a["extrapolated"]
+    host = a["provenance"]["host"]
+    rows = [f"{shown(words)} ({host['threads']} threads, {host['isa']}; {a['seconds_cold']:.0f} s with an empty cache):\n",
+            "| dispenser mm | dosage factor | turnovers N | profile order | rest | drift order | captured f | lateral variance / D50² N | seconds |",
+            "|---|---|---|---|---|---|---|---|---|"]
+    for s in heap["strips"]:
+        rows.append(f"| {1e3 * s['dispenser_length_m']:.1f} | {s['dosage_factor']:.1f} | {s['turnovers']:.1f} | {s['profile_order']:+.3f} | {s['profile_rest']:.3f} | "
+                    f"{s['drift_order']:.3f} | {s['capture_fraction']:.2f} | {s['lateral']:.2f} | {s['seconds_cold']:.0f} |")
+    rows.append("\nLaw: " + law_line(heap))
+    rows.append(f"\nVerdict: **{a['verdict']}**: misfit {a['misfit']['value']:.3f} (95 % bounds {a['misfit']['interval'][0]:.3f} and {a['misfit']['interval'][1]:.3f}, "
+                f"tolerance {a['misfit']['tolerance']:.2f}), x drift {a['x_drift']['value']:.3f} ({a['x_drift']['interval'][0]:.3f} and "
+                f"{a['x_drift']['interval'][1]:.3f}, tolerance {a['x_drift']['tolerance']:.2f}).")
+    images = os.path.join(ROOT, "docs", "images")
+    shutil.copyfile(os.path.join(out, "heap_order.svg"), os.path.join(images, f"scale_up_{name}.svg"))
+    rows.append(f"\n![order of the strips against turnovers, with the law](images/scale_up_{name}.svg)")
+    return "\n".join(rows)
+
+
+TABLES = {"machine": MACHINE, "check": CHECK}
+
+
+def main():
+    wanted = sys.argv[1:] or list(TABLES)
+    for name in wanted:
+        if name not in TABLES:
+            sys.exit(f"no table '{name}'; there are {', '.join(TABLES)}")
+        table = strips_table(name, TABLES[name])
+        with open(PAGE) as file:
+            page = file.read()
+        mark = re.compile(rf"(<!-- {name}: begin -->\n).*?(<!-- {name}: end -->)", re.S)
+        if not mark.search(page):
+            sys.exit(f"{PAGE} has no place for the table '{name}'")
+        with open(PAGE, "w") as file:
+            file.write(mark.sub(lambda m: m.group(1) + table + "\n" + m.group(2), page))
+
+
+main()
