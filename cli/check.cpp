@@ -52,6 +52,18 @@ std::vector<InputProblem> fatal_problems(const Study& study, const StudyEstimate
              fmt::format("the supply ratio is {:.2f}, below {}: the layer would be starved",
                          estimate.supply_ratio, kRefusedSupply),
              "raise dosage_factor, lower layer_thickness, or allow it with process.allow_starved = true"});
+    for (const double dosage : study.scale_up.dosage_factors) {
+        const Design design = start_design(study);
+        const double supply =
+            supply_ratio(scaled_strip(study, design, study.scale_up.lengths.front(), dosage, study.seed),
+                         kAssumedBedPacking, study.steady_packing);
+        if (supply < kRefusedSupply && !study.allow_starved)
+            problems.push_back(
+                {study.file, 0, "scale_up.dosage_factors", fmt::format("{:.3g}", dosage),
+                 fmt::format("the supply ratio is {:.2f}, below {}: that strip would be starved", supply,
+                             kRefusedSupply),
+                 "leave it out, or take a larger one"});
+    }
     return problems;
 }
 
@@ -189,7 +201,7 @@ StudyEstimate estimate(const Study& study, int threads) {
     if (study.scale_up.on()) {
         for (const auto& [length, dosage] : scale_up_plan(study, design.dosage_factor))
             planned.push_back({fmt::format("strip {:.4g} mm, dosage {:.3g}", 1e3 * length, dosage),
-                               scaled_strip(study, length, dosage, study.seed), 1});
+                               scaled_strip(study, design, length, dosage, study.seed), 1});
     } else {
         planned.push_back({"map strip", scene_of(study, design, true, study.seed), study.map_spreads});
         planned.push_back({"full width", scene_of(study, design, false, study.seed),
@@ -201,7 +213,8 @@ StudyEstimate estimate(const Study& study, int threads) {
         spread.cost = estimate_cost(scene);
         spread.seconds = spread.cost.grain_steps / (kAssumedSpeed * std::max(1, threads));
         spread.at_most = at_most;
-        spread.problems = validate(scene);
+        // what is never spread cannot be refused
+        if (at_most > 0) spread.problems = validate(scene);
         result.seconds_at_most += spread.at_most * spread.seconds;
         result.memory_bytes = std::max(result.memory_bytes, spread.cost.memory_bytes);
         result.spreads.push_back(std::move(spread));

@@ -78,6 +78,18 @@ std::string hint(const std::string& word, const std::vector<std::string>& valid)
     return name.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", name);
 }
 
+void refuse_scale_up(const Study& study, const std::string& what) {
+    if (study.scale_up.on())
+        throw Failure(
+            ExitCode::bad_input,
+            fmt::format(
+                "{} would spread the whole machine of '{}', which its [scale_up] has extrapolated from "
+                "strips",
+                what, study.file),
+            "it has 'check', 'design' and 'evaluate --fidelity map' or 'kinematic'; leave [scale_up] out to "
+            "spread it all the same");
+}
+
 Study load_study(const std::string& file, const CommonOptions& options) {
     std::error_code ignored;
     const fs::path path(file);

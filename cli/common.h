@@ -88,6 +88,9 @@ void add_machines(CLI::App& app, Call& call);
 /// Reads the study with --set and --seed applied. A file that cannot be opened is Failure io, with the
 /// nearest file name; bad content is InputError with all problems.
 Study load_study(const std::string& file, const CommonOptions& options);
+/// A study with [scale_up] has `design` and `evaluate --fidelity map` alone: its machine is never spread.
+/// `what` was asked for instead.
+void refuse_scale_up(const Study& study, const std::string& what);
 
 /// Folder of settled beds and maps: --cache, else $XDG_CACHE_HOME/gradwright, else ~/.cache/gradwright. Made
 /// when it is not there. Empty ("no cache") for --cache none, and, with a word on stderr, when the default

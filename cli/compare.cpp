@@ -51,6 +51,7 @@ ExitCode run_compare(const CompareCommand& command, CommonOptions common) {
     // An input of the study, so that the reports list it with the others.
     if (command.budget > 0) common.set.push_back(fmt::format("run.max_spreads={}", command.budget));
     Study study = load_study(command.what.front(), common);
+    refuse_scale_up(study, "compare");
     const StudyEstimate cost = estimate(study, thread_count(common));
     refuse_impossible(study, cost);
     study.warnings = all_warnings(study, cost);

@@ -285,6 +285,7 @@ ExitCode run_crosscheck_command(const CrosscheckCommand& command, const CommonOp
                                   hint(command.engine, engines)),
                       "gradwright crosscheck lammps STUDY");
     const Study study = load_study(command.study, common);
+    refuse_scale_up(study, "crosscheck");
     refuse_impossible(study, estimate(study, thread_count(common)));
     if (command.speed) return run_speed(study, command, common);
     CrosscheckOptions options;

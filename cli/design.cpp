@@ -132,6 +132,7 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
     if (!searches_one_fidelity(options.strategy) && options.budget > 0 && !(resumed && options.study.empty()))
         common.set.push_back(fmt::format("run.max_spreads={}", options.budget));
     Study study = study_of(options, common, resumed);
+    if (options.strategy != "map") refuse_scale_up(study, "--strategy " + options.strategy);
     const StudyEstimate cost = estimate(study, thread_count(common));
     refuse_impossible(study, cost);
     study.warnings = all_warnings(study, cost);  // they go into every result

@@ -147,6 +147,8 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
     if (options.figures && fidelity != Fidelity::full)
         throw Failure(ExitCode::usage, "--figures needs the grains of a full spread", "use --fidelity full");
     Study study = load_study(options.study, common);
+    if (fidelity == Fidelity::full || fidelity == Fidelity::lammps)
+        refuse_scale_up(study, "evaluate --fidelity " + std::string(to_string(fidelity)));
     const auto composition = composition_request(options, study);
     // The kinematic picture needs no spread, so nothing about a spread can forbid it.
     if (fidelity != Fidelity::kinematic) {

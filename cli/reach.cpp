@@ -40,6 +40,7 @@ double resolution_of(const std::string& text, const Study& study) {
 
 ExitCode run_reach_command(const ReachCommand& command, const CommonOptions& common) {
     Study study = load_study(command.study, common);
+    refuse_scale_up(study, "reach");
     ReachOptions options;
     options.grid = command.grid;
     options.resolution = resolution_of(command.resolution, study);

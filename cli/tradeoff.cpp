@@ -54,6 +54,7 @@ ExitCode run_tradeoff_command(const TradeoffCommand& command, const CommonOption
     options.around_study = command.around == "study";
     options.run.threads = thread_count(common);
     const Study study = load_study(command.study, common);
+    refuse_scale_up(study, "tradeoff");
     const StudyReader read = [&](const std::vector<std::string>& more) {
         CommonOptions with = common;
         with.set.insert(with.set.end(), more.begin(), more.end());

@@ -3,8 +3,8 @@
 
     python3 docs/make_scale_up.py [machine] [check]
 
-`machine` designs the example (about ten minutes on two cores), `check` does so with one strip of twice the longest (about
-twenty more). Answers are kept in runs/scale-up/; delete one to measure it again. GRADWRIGHT in the environment names another
+`machine` designs the example (about eight minutes on two cores), `check` does so with one strip of twice the longest (half an
+hour more). Answers are kept in runs/scale-up/; delete one to measure it again. GRADWRIGHT in the environment names another
 program than ./gradwright. Needs nothing but Python's standard library.
 """
 import json
@@ -43,10 +43,10 @@ def shown(words):
 
 def law_line(heap):
     law = heap["law"]
-    return (f"amplitude {law['amplitude']:.2f}, memory {law['memory']:.1f} turnovers, one turn in {law['turn']:.1f}; collapse error "
-            f"{law['collapse_error']:.3f}; the longest strip by the law of the shorter ones: off by {law['longest_miss']:+.3f}, inside an "
-            f"envelope of {law['longest_envelope']:.3f}. Carried to {heap['turnovers']:.1f} turnovers: {heap['profile_error']:.3f} in GI, "
-            f"{heap['drift_error']:.3f} in x drift.")
+    return (f"Last doubling: W moved by **{heap['profile_step']:.3f}**, its drift by **{heap['drift_step']:.3f}**; doses at one length "
+            f"differ by up to {heap['dose_step']:.3f}. Carried to 100 mm: {heap['profile_error']:.3f} in GI, {heap['drift_error']:.3f} in x drift.\n\n"
+            f"Law of the order, not used: amplitude {law['amplitude']:.2f}, memory {law['memory']:.1f} turnovers, one turn in {law['turn']:.1f}; "
+            f"collapse error **{law['collapse_error']:.3f}**; the longest strip by the law of the others: off by {law['longest_miss']:+.3f}.")
 
 
 def strips_table(name, words):
@@ -59,7 +59,7 @@ def strips_table(name, words):
     for s in heap["strips"]:
         rows.append(f"| {1e3 * s['dispenser_length_m']:.1f} | {s['dosage_factor']:.1f} | {s['turnovers']:.1f} | {s['profile_order']:+.3f} | {s['profile_rest']:.3f} | "
                     f"{s['drift_order']:.3f} | {s['capture_fraction']:.2f} | {s['lateral']:.2f} | {s['seconds_cold']:.0f} |")
-    rows.append("\nLaw: " + law_line(heap))
+    rows.append("\n" + law_line(heap))
     rows.append(f"\nVerdict: **{a['verdict']}**: misfit {a['misfit']['value']:.3f} (95 % bounds {a['misfit']['interval'][0]:.3f} and {a['misfit']['interval'][1]:.3f}, "
                 f"tolerance {a['misfit']['tolerance']:.2f}), x drift {a['x_drift']['value']:.3f} ({a['x_drift']['interval'][0]:.3f} and "
                 f"{a['x_drift']['interval'][1]:.3f}, tolerance {a['x_drift']['tolerance']:.2f}).")

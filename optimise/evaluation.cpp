@@ -22,6 +22,13 @@ double mean_weight(const Target& target, double low, double high) {
     return sum / (high - low);
 }
 
+void widen_as_one(Misfit& misfit, double degrees) {
+    const double one = 1;  // one-sided 95 % is two-sided 90 %
+    const double margin = simultaneous_factor({&one, 1}, 0.9, degrees) * misfit.noise_floor;
+    misfit.interval_low = std::min(misfit.interval_low, std::max(0.0, misfit.value - margin));
+    misfit.interval_high = std::max(misfit.interval_high, std::min(1.0, misfit.value + margin));  // of GI
+}
+
 }  // namespace
 
 const char* to_string(Fidelity fidelity) {
@@ -131,6 +138,11 @@ void judge(const Study& study, Evaluation& evaluation) {
         // The same bins everywhere: the number beside the misfit is the number the verdict is about.
         evaluation.drift.value = drift;
         evaluation.drift.noise_floor = evaluation.drift_misfit.noise_floor;
+    }
+
+    if (evaluation.one_error) {
+        widen_as_one(evaluation.misfit, evaluation.profile.degrees);
+        widen_as_one(evaluation.drift_misfit, evaluation.drift.degrees);
     }
 
     for (std::size_t b = 0; b < bins; ++b)

@@ -26,6 +26,7 @@ struct Evaluation {
     /// bins itself.
     GradationProfile plain_check;
     XDrift plain_check_drift;            ///< and their drift
+    bool one_error = false;              ///< one error moves all bins: an extrapolation (heap_order.h)
     bool every_grain = false;            ///< full only: every grain told of every y (dem_evaluator.h)
     std::vector<double> target, weight;  ///< per bin
     Misfit misfit, drift_misfit;
@@ -76,7 +77,10 @@ void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio);
 /// residuals. objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0,
 /// min_coverage - coverage) [GI units], m = raw misfit in the study's norm, d = rms x drift. Raw, not
 /// debiased: debiasing is flat at zero and stops a search there; the floor hardly changes between designs on
-/// one map. Without any counting bin the health becomes "no_bins" and the objective 10.
+/// one map. With `one_error` the
+/// intervals are at least value -+ t noise_floor, t Student's one-sided 95 % point: what moves all bins
+/// together does not average out over them. Without any counting bin the health becomes "no_bins" and the
+/// objective 10.
 void judge(const Study& study, Evaluation& evaluation);
 /// Objective of an evaluation that has no numbers: worse than any real one (a misfit is at most 1).
 inline constexpr double kNotEvaluable = 10;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kOriginSteps = 40;  // of xi in the rms of an order
 constexpr int kParameters = 4;    // of the law
+constexpr int kModes = 3;         // of a difference of two W that count
 
 /// W(xi) at xi = 1/40 .. 39/40 of the grains with deposit in [low, high) of the platform; empty without
 /// grains.
@@ -148,6 +149,7 @@ HeapOrder heap_order(const Layer& layer, const Scene& scene, double low, double 
         whole[k] -= double(k + 1) / kOriginSteps;
         last[k] -= first[k];
     }
+    order.share = whole;
     for (std::size_t k = 0; k < whole.size(); ++k)
         order.profile += std::numbers::sqrt2 / kOriginSteps * whole[k] *
                          std::sin(std::numbers::pi * double(k + 1) / kOriginSteps);
@@ -156,6 +158,7 @@ HeapOrder heap_order(const Layer& layer, const Scene& scene, double low, double 
             order.profile * std::numbers::sqrt2 * std::sin(std::numbers::pi * double(k + 1) / kOriginSteps);
     order.profile_rest = rms(whole);
     order.drift = rms(last);
+    order.share_drift = last;
 
     double volume = 0, mean = 0, square = 0;
     for (std::size_t i = 0; i < layer.size(); ++i) {
@@ -165,7 +168,7 @@ HeapOrder heap_order(const Layer& layer, const Scene& scene, double low, double 
         square += layer.volume[i] * way * way;
     }
     mean /= volume;
-    const double d50 = 0.5 * (scene.powder[0].size.d50 + scene.powder[1].size.d50);
+    const double d50 = scene.powder[0].size.d50;  // a strip holds powder A alone
     order.lateral = std::max(0.0, square / volume - mean * mean) / (d50 * d50 * order.turnovers);
     return order;
 }
@@ -203,18 +206,25 @@ OrderLaw fit_order_law(std::span<const double> turnovers, std::span<const double
 }
 
 void carry_extrapolation(const ScaledHeap& heap, Evaluation& evaluation) {
+    // share of the dispenser's length on A's side of every bin's middle: where the partition stands in units
+    // of xi
+    constexpr int kAlong = 400;
+    const PartitionCurve& partition = evaluation.design.partition;
+    std::vector<double> shape;
+    for (const double y : evaluation.profile.y_m) {
+        int on_a = 0;
+        for (int i = 0; i < kAlong; ++i) on_a += partition.on_side_a((i + 0.5) / kAlong * heap.length, y);
+        shape.push_back(std::numbers::sqrt2 * std::sin(std::numbers::pi * on_a / kAlong));
+    }
     const auto widen = [&](std::vector<double>& error, double by) {
-        for (std::size_t b = 0; b < error.size(); ++b) {
-            const double gi = b < evaluation.profile.gi.size() ? evaluation.profile.gi[b] : 0;
-            if (!std::isfinite(gi)) continue;
-            const double share = std::clamp(gi, 0.0, 1.0);
-            error[b] = std::hypot(error[b], by * std::numbers::sqrt2 * std::sin(std::numbers::pi * share));
-        }
+        for (std::size_t b = 0; b < error.size() && b < shape.size(); ++b)
+            error[b] = std::hypot(error[b], by * shape[b]);
     };
     widen(evaluation.profile.standard_error, heap.profile_error);
     widen(evaluation.drift.standard_error, heap.drift_error);
     evaluation.drift.noise_floor = std::hypot(evaluation.drift.noise_floor, heap.drift_error);
-    evaluation.profile.degrees = evaluation.drift.degrees = std::max(1, heap.law.strips - kParameters);
+    evaluation.profile.degrees = evaluation.drift.degrees = kModes;
+    evaluation.one_error = true;
 }
 
 double common_factor(double degrees) {
@@ -222,15 +232,42 @@ double common_factor(double degrees) {
     return simultaneous_factor({&one, 1}, 0.95, degrees);
 }
 
-void judge_as_one(Evaluation& evaluation) {
-    const double one = 1;
-    const auto widen = [&one](Misfit& misfit, double degrees) {
-        const double margin = simultaneous_factor({&one, 1}, 0.9, degrees) * misfit.noise_floor;
-        misfit.interval_low = std::min(misfit.interval_low, std::max(0.0, misfit.value - margin));
-        misfit.interval_high = std::max(misfit.interval_high, misfit.value + margin);
+double ScaledHeap::doublings() const {
+    return std::max(1.0, std::log2(length / longest));
+}
+
+void carry_errors(ScaledHeap& heap, double dosage_factor) {
+    const auto own = [&](const HeapOrder& strip) {
+        return std::fabs(strip.dosage_factor / dosage_factor - 1) < 1e-6;
     };
-    widen(evaluation.misfit, evaluation.profile.degrees);
-    widen(evaluation.drift_misfit, evaluation.drift.degrees);
+    const auto difference = [](const std::vector<double>& a, const std::vector<double>& b) {
+        std::vector<double> d(a.size());
+        for (std::size_t k = 0; k < d.size(); ++k) d[k] = a[k] - b[k];
+        return rms(d);
+    };
+    std::vector<const HeapOrder*> lengths;
+    for (const HeapOrder& strip : heap.strips)
+        if (own(strip)) lengths.push_back(&strip);
+    if (lengths.size() < 2) throw std::invalid_argument("two lengths at the design's dose are needed");
+    std::sort(lengths.begin(), lengths.end(), [](const HeapOrder* a, const HeapOrder* b) {
+        return a->dispenser_length < b->dispenser_length;
+    });
+    const HeapOrder &last = *lengths.back(), &before = *lengths[lengths.size() - 2];
+    heap.longest = last.dispenser_length;
+    // measured over some ratio of lengths: as of one doubling
+    const double measured = std::sqrt(std::log2(last.dispenser_length / before.dispenser_length));
+    heap.profile_step = difference(last.share, before.share) / measured;
+    heap.drift_step = difference(last.share_drift, before.share_drift) / measured;
+    heap.dose_step = 0;
+    for (const HeapOrder& a : heap.strips)
+        for (const HeapOrder& b : heap.strips)
+            if (own(a) && !own(b) && std::fabs(a.dispenser_length / b.dispenser_length - 1) < 1e-6)
+                heap.dose_step = std::max(heap.dose_step, difference(a.share, b.share));
+    const double further = std::sqrt(heap.doublings());
+    heap.profile_error = further * heap.profile_step;
+    heap.drift_error = further * heap.drift_step;
+    for (const HeapOrder& strip : heap.strips) heap.drift_error = std::max(heap.drift_error, strip.drift);
+    heap.nearest = last;
 }
 
 }  // namespace gradwright

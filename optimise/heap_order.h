@@ -1,29 +1,28 @@
-// From coupon to machine: how much of the dispenser's order the laid powder still shows, measured on strips
-// of several lengths and doses, fitted by a reduced heap model and carried to a length that nobody can
-// simulate.
+// From coupon to machine: the transport kernel of strips of several lengths and doses, in units of the
+// dispenser's length, and what a machine too long to be spread can be promised from them.
 //
-// A heap that is pushed over the dispenser takes up its powder in order of x. A short one gives it back
-// nearly as it took it, last in, first out; a long one rolls over again and again, which turns the order
-// round and wears it down. Where none is left every grain of the layer comes from anywhere in the dispenser
-// with the same probability, and a partition lays the share of the dispenser's length that lies on A's side:
-// the kinematic picture. What is left of the order is that picture's error. With W(xi) = share of the
-// footprint's volume with origin_x <= xi L_d,
+// W(xi) = share of the footprint's volume with origin_x <= xi L_d is what a partition is designed with: a
+// straight one lays GI = 1 - W where it stands at xi. The longest strip's layer, stretched to the machine, is
+// the machine's map; how far W still changed from the next shorter strip to it is the error of that,
+//   step = rms over xi of W(longest) - W(next shorter), both at the design's dose,
+// and sqrt(doublings) of it are carried for a machine longer by that many doublings: further steps no larger
+// than the last and independent. The same for the drift, W over the footprint's last third minus W over its
+// first, but never less than the largest drift of any strip: it turns with length, so that its phase on the
+// machine is not known.
+//
+// Beside it stands a reduced model of a heap that rolls: the order left in the layer,
 //   profile order = sqrt(2) int (W - xi) sin(pi xi) dxi: the slowest mode, with its sign (> 0: laid from the
 //   back of the
-//                   dispenser), as an rms over xi. A straight partition lays GI = 1 - W at the y where it
-//                   stands at xi, so that W - xi is its error of GI along a linear ramp;
+//                   dispenser), as an rms over xi; nothing left of it = every grain from anywhere, the
+//                   kinematic picture;
 //   profile rest  = rms of what W - xi has besides that mode;
-//   drift order   = rms over xi of W over the footprint's last third minus W over its first third.
-// Reduced model of a heap that rolls: the order turns and fades with the turnovers N, the way in heap
-// lengths,
+//   drift order   = rms over xi of the drift of W;
+// would turn and fade with the turnovers N, the way in heap lengths,
 //   profile order = A exp(-N / N_memory) cos(2 pi N / N_turn + phase),   N = L_d / sqrt(h L_d) = sqrt(L_d /
 //   h),
-// h the dose height; sqrt(h L_d) is the side of the square that the dose would make, the heap's length but
-// for its slope. N alone stands for length and dose: the collapse error says how well. The phase at N far
-// beyond the strips is not known, so a machine carries the whole envelope A exp(-N / N_memory); the drift's
-// envelope fades with the same memory and lies above every strip. Strips keep the machine's ratios of land
-// and platform to dispenser. Source: our own measurements, docs/scale-up.md. The lateral way grows as in
-// kinematic_evaluator.h.
+// h the dose height. Its collapse error says how far strips of all lengths and doses lie from the one curve.
+// It is fitted and told, and not used: docs/scale-up.md shows why. Source: our own measurements,
+// docs/scale-up.md. The lateral way grows as in kinematic_evaluator.h.
 #pragma once
 #include <span>
 #include <string>
@@ -43,6 +42,7 @@ struct HeapOrder {
     double dosage_factor = 0;
     double turnovers = 0;                             ///< N [-]
     double profile = 0, profile_rest = 0, drift = 0;  ///< orders [-]
+    std::vector<double> share, share_drift;           ///< W - xi and the drift of W, xi = 1/40 .. 39/40
     double lateral = 0;  ///< variance of the lateral way over D50^2 and turnovers [-]
     double capture_fraction = 0, packing_fraction = 0, waste_fraction = 0, bed_packing = 0, coverage = 0;
     long grains = 0;
@@ -75,47 +75,51 @@ OrderLaw fit_order_law(std::span<const double> turnovers, std::span<const double
 /// Everything that scaling up has found.
 struct ScaledHeap {
     RunHealth health;
-    std::vector<HeapOrder> strips;              ///< by turnovers, rising
-    OrderLaw law;                               ///< of the profile order
-    double drift_amplitude = 0;                 ///< of the drift's envelope
-    double turnovers = 0;                       ///< of the machine asked for
+    std::vector<HeapOrder> strips;            ///< by turnovers, rising
+    OrderLaw law;                             ///< told, not used
+    double turnovers = 0;                     ///< of the machine asked for
+    double length = 0, longest = 0;           ///< its dispenser, and the longest one spread at its dose [m]
+    double profile_step = 0, drift_step = 0;  ///< from the next shorter strip to the longest, a doubling [-]
+    double dose_step = 0;  ///< largest rms of W between doses at one length [-]; 0: one dose
     double profile_error = 0, drift_error = 0;  ///< carried by the design, rms over a ramp [-]
-    double lateral = 0;                         ///< mean over the strips
-    double longest = 0;                         ///< longest dispenser spread [m]
+    HeapOrder nearest;                          ///< the longest strip at the design's dose
+    Layer kernel;                               ///< and its layer
     long steps = 0, grains = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;
     std::string state_hash;
-    /// Of the strip with the most turnovers.
-    const HeapOrder& nearest() const { return strips.back(); }
+    /// log2 of the machine's length over the longest strip's, at least one.
+    double doublings() const;
     /// What the extrapolation rests on, one sentence each, for people.
     std::vector<std::string> rests_on;
 };
 
-/// Scene of a strip of the study at another dispenser length and dosage: platform and land in proportion.
-Scene scaled_strip(const Study& study, double dispenser_length, double dosage_factor, std::uint64_t seed);
+/// Scene of a strip of the study at another dispenser length and dosage: platform and the design's land in
+/// proportion.
+Scene scaled_strip(const Study& study, const Design& design, double dispenser_length, double dosage_factor,
+                   std::uint64_t seed);
 /// The strips a study asks for: (length [m], dosage factor), all lengths at the design's dosage factor, then
-/// the other dosage factors at the middle length.
+/// the other dosage factors at the lower middle length.
 std::vector<std::pair<double, double>> scale_up_plan(const Study& study, double dosage_factor);
 
-/// Sets profile_error, drift_error and drift_amplitude from strips and law.
-void carry_errors(ScaledHeap& heap);
+/// Sets nearest, longest, steps and errors from strips and `length`. Throws std::invalid_argument when there
+/// are not two lengths at that dosage factor.
+void carry_errors(ScaledHeap& heap, double dosage_factor);
 
 class SpreadRunner;
-/// Spreads the plan and fits. `health` tells when a strip failed.
+/// Spreads the plan and fits. `health` tells when a strip at the design's own dose failed; another dose that
+/// fails is left out with a warning.
 ScaledHeap scale_up(const Study& study, const Design& design, SpreadRunner& runner);
 
-/// The layer of a fully mixed heap on the study's machine: `grains` origins even over the dispenser, deposits
-/// even over the platform, lateral ways normal with the variance the strips say. A map for every estimator;
-/// its volumes are those of `grains` equal shares of what the machine lays.
-Layer mixed_layer(const Study& study, const Design& design, const ScaledHeap& heap, int grains = 40000);
+/// The longest strip's layer stretched to the study's machine: x by the lengths, y to the whole width,
+/// lateral ways as a random walk by the root of the turnovers. Volumes are those of the machine's layer.
+Layer stretched_layer(const Study& study, const Design& design, const ScaledHeap& heap);
 
-/// Adds the errors of `heap` to those of `evaluation`, in quadrature, bin by bin: error x sqrt(2) sin(pi GI),
-/// the shape of the slowest mode of mixing, which is largest in the middle of the dispenser and nothing where
-/// no grain could carry another label.
+/// Adds the errors of `heap` to those of `evaluation`, in quadrature, bin by bin: error x sqrt(2) sin(pi s),
+/// s the share of the dispenser's length on A's side of the bin's middle: the shape of the slowest mode,
+/// largest in the middle of the dispenser and nothing where no place of it could send another label. One
+/// error then moves all bins (Evaluation::one_error); its size is known from the difference of two curves of
+/// some three modes, which are its degrees of freedom.
 void carry_extrapolation(const ScaledHeap& heap, Evaluation& evaluation);
-/// The carried error is one number for all bins, not one for each: what `judge` has made of it as if bins
-/// were independent is widened to value -+ t noise_floor, t Student's one-sided 95 % point.
-void judge_as_one(Evaluation& evaluation);
 /// Half width in standard errors of a band that holds all bins at once, 95 %, when one error moves them all.
 double common_factor(double degrees);
 

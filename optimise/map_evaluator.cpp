@@ -160,7 +160,7 @@ void MapEvaluator::extrapolate(OriginMap& map, const Design& design) {
     map.scene = scene_of(study_, design, true, study_.seed);
     map.seed = study_.seed;
     if (!map.health.ok()) return;
-    map.layers = {mixed_layer(study_, design, heap)};
+    map.layers = {stretched_layer(study_, design, heap)};
     map.average();
 }
 
@@ -221,21 +221,21 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         HomogeneousOptions options;
         options.resamples = quoted ? kResamples : 0;
         options.seed = map.seed;
+        // what was a block on the strip is one on the machine
+        if (map.heap) options.block *= map.heap->length / map.heap->longest;
         const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high);
         evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
         evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
-        if (map.heap)
-            carry_extrapolation(*map.heap, evaluation);
-        else if (!grains.replicates())
-            allow_for_beds(evaluation, kBedsOverBlocksMap);
+        if (!grains.replicates()) allow_for_beds(evaluation, kBedsOverBlocksMap);
+        if (map.heap) carry_extrapolation(*map.heap, evaluation);
         const ChamberFill fill = chamber_fill(study_, design);
         fill.apply(evaluation.profile, evaluation.drift);
         Footprint in_strip = footprint;
         in_strip.y_low = 0;
         for (const Layer& layer : map.layers) {
             in_strip.y_high = layer.width;
-            // the grains of a mixed layer are samples: how they cover is known from the strips
-            evaluation.coverage += (map.heap ? map.heap->nearest().coverage : coverage(layer, in_strip)) /
+            // stretched grains lie far apart: how they cover is known from the strip
+            evaluation.coverage += (map.heap ? map.heap->nearest.coverage : coverage(layer, in_strip)) /
                                    double(map.layers.size());
         }
         if (quoted) {
@@ -246,19 +246,24 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
             for (const double share : fill.share_a)
                 density.push_back(share * study_.scene.powder[0].material.density +
                                   (1 - share) * study_.scene.powder[1].material.density);
-            evaluation.map = gradation_map(whole, label, density, study_.bins.width, study_.dispenser_width);
-            evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
-            for (double& s : evaluation.plain_check.standard_error)
-                s *= std::sqrt(kBedsOverBlocksPlain.profile);
-            evaluation.plain_check_drift = plain_drift(whole, label, footprint, study_.bins, map.seed);
-            for (double& s : evaluation.plain_check_drift.standard_error)
-                s *= std::sqrt(kBedsOverBlocksPlain.drift);
-            fill.apply(evaluation.plain_check, evaluation.plain_check_drift);
+            // stretched grains would leave small cells empty, and bins of their own grains say nothing new of
+            // a machine
+            const double cell =
+                map.heap ? std::max(study_.bins.width, study_.dispenser_width / 20) : study_.bins.width;
+            evaluation.map = gradation_map(whole, label, density, cell, study_.dispenser_width);
+            if (!map.heap) {
+                evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
+                for (double& s : evaluation.plain_check.standard_error)
+                    s *= std::sqrt(kBedsOverBlocksPlain.profile);
+                evaluation.plain_check_drift = plain_drift(whole, label, footprint, study_.bins, map.seed);
+                for (double& s : evaluation.plain_check_drift.standard_error)
+                    s *= std::sqrt(kBedsOverBlocksPlain.drift);
+                fill.apply(evaluation.plain_check, evaluation.plain_check_drift);
+            }
             fill.apply(evaluation.map);
         }
     }
     judge(study_, evaluation);
-    if (map.heap && evaluation.health.ok()) judge_as_one(evaluation);
     evaluation.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     evaluation.seconds_cold = evaluation.seconds;
     if (!map.told) {

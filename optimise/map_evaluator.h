@@ -27,7 +27,7 @@ struct OriginMap {
     std::string state_hash;
     /// Sets the means from the layers.
     void average();
-    /// A machine extrapolated from strips: the layers are one of a fully mixed heap, and its errors are
+    /// A machine extrapolated from strips: the layer is the longest one's, stretched, and its errors are
     /// carried.
     std::optional<ScaledHeap> heap;
     bool told = false;  ///< its spreads and their time have been handed out with an evaluation

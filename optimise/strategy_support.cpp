@@ -156,6 +156,7 @@ StudyResult StrategyRun::finish_extrapolated(const Evaluation& predicted, const 
     result.coverage = predicted.coverage;
     result.waste_fraction = predicted.waste_fraction;
     result.packing_fraction = predicted.packing_fraction;
+    result.waste_a_share = std::numeric_limits<double>::quiet_NaN();  // a strip carries no labels
     const double factor = common_factor(predicted.profile.degrees);
     for (std::size_t b = 0; b < predicted.profile.gi.size(); ++b) {
         const double gi = predicted.profile.gi[b], half = factor * predicted.profile.standard_error[b];
@@ -174,9 +175,7 @@ StudyResult StrategyRun::finish_extrapolated(const Evaluation& predicted, const 
         heap.strips.size(), 1e3 * heap.longest, with_interval(result.misfit),
         with_interval(result.drift_misfit));
     if (result.verdict == Verdict::undecided)
-        result.message +=
-            " Longer strips in scale_up.lengths narrow the band, and so does a land along which the heap "
-            "turns over more often.";
+        result.message += " A longer strip in scale_up.lengths narrows the band.";
     return std::move(result);
 }
 

@@ -175,9 +175,9 @@ void read_scale_up(TomlReader& reader, Section& root, Study& study) {
         section.quantities("lengths", "length", {1.6e-3, 3.2e-3, 6.4e-3, 12.8e-3},
                            "our default: five to ten minutes on two cores", 3, Range::above_to(0, 10));
     const double own = study.design_space.dosage_factor.value;
-    std::vector<double> dosages = section.quantities("dosage_factors", "", {own, own / 1.5, own * 1.5},
-                                                     "the study's own, two thirds and one and a half of it",
-                                                     1, Range::above_to(0, 100));
+    std::vector<double> dosages = section.quantities(
+        "dosage_factors", "", {own, 1.25 * own, 1.5 * own},
+        "the study's own, 1.25 and 1.5 times it: less could starve", 1, Range::above_to(0, 100));
     section.finish();
     if (reader.sound({"scale_up.lengths", "machine.dispenser"}))
         for (const double strip : lengths)

@@ -65,6 +65,7 @@ json evaluation_summary(const Study& study, const Evaluation& evaluation) {
                  {"x_drift", drift_profile_json(evaluation.plain_check_drift)}};
     return {{"fidelity", to_string(evaluation.fidelity)},
             {"estimator", estimator_of(evaluation)},
+            {"extrapolated", evaluation.one_error},
             {"plain_bins", plain},
             {"turnover", turnover},
             {"status", evaluation.health.status},
@@ -190,6 +191,9 @@ json extrapolated_json(const std::optional<ScaledHeap>& heap) {
               {"longest_envelope", number(law.longest_envelope)}}},
             {"turnovers", number(heap->turnovers)},
             {"longest_strip_m", number(heap->longest)},
+            {"profile_step", number(heap->profile_step)},
+            {"drift_step", number(heap->drift_step)},
+            {"dose_step", number(heap->dose_step)},
             {"profile_error", number(heap->profile_error)},
             {"drift_error", number(heap->drift_error)},
             {"rests_on", heap->rests_on}};
@@ -266,6 +270,8 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
         number(proved ? result.confirmed_drift.noise_floor : result.predicted.drift.noise_floor);
     drift["tolerance"] = number(study.objective.x_drift_tolerance);
     drift["profile"] = drift_profile_json(proved ? result.confirmed_drift : result.predicted.drift);
+    if (result.extrapolated)  // one error moves all bins
+        drift["profile"]["band_factor"] = number(common_factor(result.predicted.drift.degrees));
     drift["of"] = proved ? "confirmed" : "predicted";
     const bool measured = proved || !result.predicted.profile.gi.empty();
     if (!measured) {

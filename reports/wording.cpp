@@ -245,8 +245,9 @@ Wording wording(const Study& study, const StudyResult& result) {
                     millimetres(study.footprint.x_high + shift));
     if (measured)
         words.losses = fmt::format(
-            "{} of the dosed solid is laid, {} overflows ({} of it A); coverage {}, supply ratio {:.2f}",
-            percent(result.capture_fraction), percent(result.waste_fraction), percent(result.waste_a_share),
+            "{} of the dosed solid is laid, {} overflows{}; coverage {}, supply ratio {:.2f}",
+            percent(result.capture_fraction), percent(result.waste_fraction),
+            std::isfinite(result.waste_a_share) ? " (" + percent(result.waste_a_share) + " of it A)" : "",
             percent(result.coverage), result.supply_ratio);
     words.warnings = study.warnings;
     words.warnings.insert(words.warnings.end(), result.warnings.begin(), result.warnings.end());

@@ -155,45 +155,60 @@ TEST(HeapOrder, four_strips_are_too_few_for_four_parameters) {
     EXPECT_FALSE(fit_order_law(four, orders(known_law(), four)).fitted);
 }
 
-ScaledHeap heap_with(const std::vector<double>& order, double machine = 28.9) {
+/// Strips of these lengths [mm] at dosage 3, whose W - xi is order x sqrt(2) sin(pi xi), and its drift
+/// `drift` of that.
+ScaledHeap heap_with(const std::vector<double>& lengths, const std::vector<double>& order, double drift,
+                     double machine = 100) {
     ScaledHeap heap;
-    heap.turnovers = machine;
+    heap.length = machine * 1e-3;
     for (std::size_t k = 0; k < order.size(); ++k) {
         HeapOrder strip;
-        strip.turnovers = kTurnovers[k];
+        strip.dispenser_length = lengths[k] * 1e-3;
+        strip.dosage_factor = 3;
+        strip.turnovers = std::sqrt(lengths[k] / 0.12);
         strip.profile = order[k];
-        strip.drift = 0.3;
-        strip.profile_rest = 0.02;
+        strip.drift = std::fabs(drift * order[k]);
+        for (int i = 1; i < 40; ++i) {
+            strip.share.push_back(order[k] * std::numbers::sqrt2 * std::sin(std::numbers::pi * i / 40.0));
+            strip.share_drift.push_back(drift * strip.share.back());
+        }
         heap.strips.push_back(strip);
     }
-    heap.law = fit_order_law({kTurnovers.data(), order.size()}, order);
-    carry_errors(heap);
     return heap;
 }
 
-TEST(HeapOrder, a_machine_carries_the_envelope_and_the_scatter) {
-    const ScaledHeap heap = heap_with(orders(known_law(), kTurnovers));
-    EXPECT_NEAR(heap.profile_error, std::hypot(0.6 * std::exp(-28.9 / 9), 0.02), 1e-3);
-    // the drift's envelope lies above every strip: here above the last
-    EXPECT_NEAR(heap.drift_error, 0.3 * std::exp((14.6 - 28.9) / 9), 2e-3);
-    EXPECT_TRUE(heap.health.warnings.empty());
+TEST(HeapOrder, a_machine_carries_the_last_step_once_for_every_doubling) {
+    ScaledHeap heap = heap_with({3.2, 6.4, 12.8}, {-0.3, 0.1, 0.15}, 0.1, 12.8 * 8);
+    carry_errors(heap, 3);
+    EXPECT_NEAR(heap.longest, 12.8e-3, 1e-12);
+    EXPECT_NEAR(heap.nearest.profile, 0.15, 1e-12);
+    // rms over 39 points of a sine between zeros: sqrt(40/39) of the rms over the whole
+    const double points = std::sqrt(40.0 / 39);
+    EXPECT_NEAR(heap.profile_step, 0.05 * points, 1e-9);
+    EXPECT_NEAR(heap.profile_error, std::sqrt(3.0) * 0.05 * points, 1e-9);
+    // its steps are small, sqrt(3) 0.005, but one of the strips drifted by 0.1 x 0.3
+    EXPECT_NEAR(heap.drift_step, 0.005 * points, 1e-9);
+    EXPECT_NEAR(heap.drift_error, 0.03, 1e-9);
 }
 
-TEST(HeapOrder, a_longest_strip_beyond_the_law_is_carried_as_it_is) {
-    std::vector<double> order = orders(known_law(), kTurnovers);
-    order.back() = 0.5;
-    const ScaledHeap heap = heap_with(order);
-    EXPECT_GE(heap.profile_error, 0.5);
-    EXPECT_GE(heap.drift_error, 0.3);
-    ASSERT_EQ(heap.health.warnings.size(), 1u);
-    EXPECT_THAT(heap.health.warnings[0], HasSubstr("more order"));
+TEST(HeapOrder, a_step_over_two_doublings_counts_as_two) {
+    ScaledHeap heap = heap_with({3.2, 12.8}, {0.1, 0.3}, 0, 25.6);
+    carry_errors(heap, 3);
+    EXPECT_NEAR(heap.profile_step, 0.2 / std::numbers::sqrt2 * std::sqrt(40.0 / 39), 1e-9);
+    EXPECT_NEAR(heap.profile_error, heap.profile_step, 1e-12);
 }
 
-TEST(HeapOrder, without_a_law_the_last_order_is_carried) {
-    const ScaledHeap heap = heap_with({-0.4, -0.3, -0.2, 0.1});
-    EXPECT_NEAR(heap.profile_error, std::hypot(0.1, 0.02), 1e-12);
-    EXPECT_NEAR(heap.drift_error, 0.3, 1e-12);
-    EXPECT_EQ(heap.health.warnings.size(), 1u);
+TEST(HeapOrder, other_doses_are_no_steps_in_length) {
+    ScaledHeap heap = heap_with({3.2, 6.4}, {0.1, 0.15}, 0);
+    HeapOrder other = heap_with({6.4}, {0.35}, 0).strips[0];
+    other.dosage_factor = 1;  // more turnovers than any
+    other.turnovers = 99;
+    heap.strips.push_back(other);
+    carry_errors(heap, 3);
+    EXPECT_NEAR(heap.nearest.profile, 0.15, 1e-12);
+    EXPECT_NEAR(heap.profile_step, 0.05 * std::sqrt(40.0 / 39), 1e-9);
+    EXPECT_NEAR(heap.dose_step, 0.2 * std::sqrt(40.0 / 39), 1e-9);
+    EXPECT_THROW(carry_errors(heap, 1), std::invalid_argument);
 }
 
 /// Strips whose heaps follow the law; `worse`: order on top of it.
@@ -235,7 +250,7 @@ bin_width = "5 mm"
 partition = { family = "straight" }
 dosage_factor = 3.0
 [objective]
-tolerance = 0.1
+tolerance = 0.25
 x_drift_tolerance = 0.2
 [numerics]
 reductions = "reduced"
@@ -258,18 +273,23 @@ TEST(ScaleUp, a_long_machine_is_designed_from_strips_and_says_so) {
     EXPECT_EQ(result.verdict, Verdict::met) << result.message;
     EXPECT_THAT(result.message, HasSubstr("Extrapolated from 7 strips"));
     EXPECT_NEAR(result.extrapolated->turnovers, std::sqrt(100 / 0.12), 1e-9);
-    // a mixed heap: straight from (0, 80) to (100, 20) or its mirror; the error carried is in every bin of
-    // the ramp
+    // nearly mixed: straight from about (0, 80) to (100, 20) or its mirror; the error carried is in every bin
+    // of the ramp
     const auto points = result.design.partition.clipped(study.scene.dispenser_length, study.dispenser_width);
-    EXPECT_NEAR(std::fabs(points.back().y - points.front().y), 60e-3, 4e-3);
+    EXPECT_NEAR(std::fabs(points.back().y - points.front().y), 60e-3, 6e-3);
     const double carried = result.extrapolated->profile_error;
-    EXPECT_GT(carried, 0.005);
+    EXPECT_GT(carried, 0.002);
     for (std::size_t b = 6; b < 14; ++b) {
         EXPECT_NEAR(result.predicted.profile.gi[b], result.target[b], 0.03) << b;
+        // the straight partition crosses y at this share of the dispenser's length
+        const auto& line = result.design.partition.points;
+        const double y = result.predicted.profile.y_m[b];
+        const double at =
+            line[0].x + (y - line[0].y) / (line.back().y - line[0].y) * (line.back().x - line[0].x);
         const double here =
-            carried * std::numbers::sqrt2 * std::sin(std::numbers::pi * result.predicted.profile.gi[b]);
-        EXPECT_GT(result.predicted.profile.standard_error[b], here) << b;
-        EXPECT_NEAR(result.predicted.profile.standard_error[b], here, 0.01) << b;
+            carried * std::numbers::sqrt2 * std::sin(std::numbers::pi * std::clamp(at / 0.1, 0.0, 1.0));
+        EXPECT_GE(result.predicted.profile.standard_error[b], here - 1e-3) << b;
+        EXPECT_NEAR(result.predicted.profile.standard_error[b], here, 0.03) << b;
         EXPECT_NEAR(result.band_low[b],
                     std::max(0.0, result.predicted.profile.gi[b] -
                                       common_factor(3) * result.predicted.profile.standard_error[b]),
@@ -294,7 +314,7 @@ TEST(ScaleUp, it_has_no_full_spreads) {
 
 TEST(ScaleUp, strips_keep_the_machines_proportions) {
     const Study study = parse_study(kMachine, "machine.toml");
-    const Scene strip = scaled_strip(study, 6.4e-3, 3, 5);
+    const Scene strip = scaled_strip(study, start_design(study), 6.4e-3, 3, 5);
     EXPECT_DOUBLE_EQ(strip.platform_length, 6.4e-3);
     EXPECT_NEAR(strip.land, 1.28e-3, 1e-12);
     EXPECT_NEAR(strip.dose_height, 120e-6, 1e-12);
@@ -307,18 +327,46 @@ TEST(ScaleUp, strips_keep_the_machines_proportions) {
     EXPECT_NEAR(plan[6].second, 4.5, 1e-12);
 }
 
-TEST(ScaleUp, a_mixed_layer_is_even_and_spreads_sideways_as_the_strips_do) {
+TEST(ScaleUp, the_longest_layer_is_stretched_and_wanders_as_a_random_walk) {
     const Study study = parse_study(kMachine, "machine.toml");
-    ScaledHeap heap = heap_with(orders(known_law(), kTurnovers));
-    heap.lateral = 0.2;
-    heap.strips.back().capture_fraction = 0.6;
-    heap.strips.back().bed_packing = 0.55;
-    const Layer layer = mixed_layer(study, start_design(study), heap);
+    ScaledHeap heap = heap_with({6.4, 12.8}, {0.1, 0.15}, 0);
+    carry_errors(heap, 3);
+    heap.turnovers = std::sqrt(100 / 0.12);
+    heap.kernel = layer_of([](double, double u) { return origin_with_order(0.15, u); }, 12.8e-3);
+    const Layer layer = stretched_layer(study, start_design(study), heap);
     const HeapOrder order = heap_order(layer, scene_of(study, start_design(study), true, 1), 0.2, 0.8);
-    EXPECT_NEAR(order.profile, 0, 1e-3);
-    EXPECT_NEAR(order.drift, 0, 3e-3);
-    EXPECT_NEAR(order.lateral, 0.2, 0.002);
-    EXPECT_NEAR(order.capture_fraction, 0.6, 1e-9);
+    EXPECT_NEAR(order.profile, 0.15, 0.01);
+    EXPECT_NEAR(order.dispenser_length, 0.1, 1e-12);
+    EXPECT_NEAR(order.capture_fraction, heap.kernel.capture_fraction(), 1e-12);
+    EXPECT_NEAR(layer.packing_fraction(), heap.kernel.packing_fraction(), 1e-9);
+    // 40 um either way on the strip: the variance grows with the turnovers
+    EXPECT_NEAR(order.lateral * order.turnovers, heap.turnovers / heap.nearest.turnovers, 1e-6);
+}
+
+TEST(ScaleUp, another_dose_that_fails_is_left_out_and_the_own_dose_ends_the_run) {
+    const Study study = parse_study(kMachine, "machine.toml");
+    for (const double bad : {2.0, 3.0}) {
+        auto calls = std::make_shared<Calls>();
+        RunOptions options;
+        const SpreadFunction sound = rolling_engine(calls);
+        options.spread = [&](const Scene& scene, const PartitionCurve* partition, const SpreadOptions& more) {
+            SpreadResult result = sound(scene, partition, more);
+            if (std::fabs(scene.dose_height - bad * 40e-6) < 1e-9) {
+                result.health.status = "starved";
+                result.health.reason = "nothing left";
+            }
+            return result;
+        };
+        const StudyResult result = run_map_strategy(study, options);
+        if (bad == 2.0) {
+            ASSERT_TRUE(result.extrapolated);
+            EXPECT_EQ(result.extrapolated->strips.size(), 6u);
+            EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("left out")));
+        } else {
+            EXPECT_EQ(result.termination, "failed");
+            EXPECT_THAT(result.message, HasSubstr("strip of 1.6 mm"));
+        }
+    }
 }
 
 }  // namespace
