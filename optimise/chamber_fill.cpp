@@ -14,6 +14,14 @@ double ChamberFill::side_share(double gi) const {
     return b / (a + b);
 }
 
+std::vector<double> ChamberFill::levelled(const std::vector<double>& gi) const {
+    std::vector<double> result;
+    for (const double value : gi)
+        result.push_back(std::isfinite(value) ? share_a[1] + (share_a[0] - share_a[1]) * side_share(value)
+                                              : value);
+    return result;
+}
+
 void ChamberFill::apply(GradationProfile& profile, XDrift& drift) const {
     if (pure() && level()) return;
     for (std::size_t b = 0; b < profile.gi.size(); ++b) {

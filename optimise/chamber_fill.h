@@ -8,6 +8,7 @@
 // which is s itself with pure powders and equal levels. Exact for a premix of powders that move alike.
 #pragma once
 #include <array>
+#include <vector>
 
 #include "dem/gradation.h"
 #include "optimise/study.h"
@@ -39,6 +40,10 @@ struct ChamberFill {
     }
     /// Share of chamber A that gives this GI; 0 or 1 beyond what the two powders span.
     double side_share(double gi) const;
+
+    /// GI that the same partition lays once the chambers are level: fill fractions act in the first layer
+    /// only (physics.md 1.3).
+    std::vector<double> levelled(const std::vector<double>& gi) const;
 
     /// Shares into GI, with their standard errors and cells.
     void apply(GradationProfile& profile, XDrift& drift) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "reports/svg_figure.h"
 
@@ -11,23 +12,24 @@ namespace gradwright {
 
 std::string heap_order_svg(const ScaledHeap& heap) {
     constexpr double width = 860, height = 380, left = 70, top = 50, right = 24, bottom = 60;
-    SvgFigure figure(width, height, "How the heap forgets the order of the dispenser");
+    SvgFigure figure(width, height, "Order of the dispenser left in the layer, strip by strip");
     double reach = 0.1;
     for (const HeapOrder& strip : heap.strips) reach = std::max(reach, 1.3 * std::fabs(strip.profile));
     const double last = 1.06 * heap.turnovers;
     Axes axes(figure, left, top, width - left - right, height - top - bottom, {0, last}, {-reach, reach});
     if (heap.law.fitted) {
-        std::vector<double> n, law, low, high;
+        std::vector<double> n, law;
         for (int k = 1; k <= 300; ++k) {
-            const double at = last * k / 300, envelope = heap.law.envelope(at);
-            if (envelope > reach) continue;
-            n.push_back(at);
-            law.push_back(heap.law.at(at));
-            low.push_back(-envelope);
-            high.push_back(envelope);
+            n.push_back(last * k / 300);
+            law.push_back(heap.law.at(n.back()));
+            if (std::fabs(law.back()) > reach)
+                law.back() = std::numeric_limits<double>::quiet_NaN();  // a gap
         }
-        axes.band(n, low, high, "#5b6b7b", 0.18);
-        axes.curve(n, law, {.colour = "#5b6b7b", .width = 2});
+        axes.curve(n, law, {.colour = "#5b6b7b", .width = 1.5, .dash = "4 4"});
+        figure.text(
+            left + 14, top + height - top - bottom - 14,
+            fmt::format("dashed: a law of turnovers, off by {:.3f}, not used", heap.law.collapse_error),
+            {.size = 12, .colour = "#5b6b7b"});
     }
     const std::vector<double> whole = {0, last}, zero = {0, 0};
     axes.curve(whole, zero, {.colour = "#888", .width = 1});
@@ -38,9 +40,10 @@ std::string heap_order_svg(const ScaledHeap& heap) {
     for (const HeapOrder& strip : heap.strips) {
         x.push_back(strip.turnovers);
         y.push_back(strip.profile);
-        figure.text(axes.px(strip.turnovers) + 9, axes.py(strip.profile) + 4,
+        // neighbours stand close: above and below in turn
+        figure.text(axes.px(strip.turnovers), axes.py(strip.profile) + (x.size() % 2 ? -11 : 20),
                     fmt::format("{:.3g} mm x {:.2g}", 1e3 * strip.dispenser_length, strip.dosage_factor),
-                    {.size = 11});
+                    {.anchor = "middle", .size = 11});
     }
     axes.dots(x, y, 5, "#111");
     axes.frame("turnovers of the heap, N = sqrt(dispenser length / dose)", "order left in the layer (GI)",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "optimise/chamber_fill.h"
 #include "reports/json_support.h"
 #include "reports/provenance.h"
 #include "reports/wording.h"
@@ -112,7 +113,7 @@ json history_json(const StudyResult& result) {
 
 /// Target, predicted, confirmed on one axis. A bin that is undefined in target or confirmed is null in both,
 /// so that a script that skips nulls compares the same bins whichever it looks at.
-json profile_json(const StudyResult& result) {
+json profile_json(const Study& study, const StudyResult& result) {
     const bool proved = !result.confirmed.gi.empty();
     const auto& y = proved ? result.confirmed.y_m : result.predicted.profile.y_m;
     json target = json::array(), predicted = json::array(), confirmed = json::array();
@@ -134,7 +135,13 @@ json profile_json(const StudyResult& result) {
         error.push_back(number(defined ? at(result.confirmed.standard_error, b) : kUndefined));
         weight.push_back(number(at(result.weight, b)));
     }
+    // unequal fills act in the first layer only: what the layers after it will be
+    const ChamberFill fill = chamber_fill(study, result.design);
+    json levelled = nullptr;
+    if (!fill.level())
+        levelled = numbers(fill.levelled(proved ? result.confirmed.gi : result.predicted.profile.gi));
     return {{"y_m", numbers(y)},
+            {"levelled", levelled},
             {"target", target},
             {"predicted", predicted},
             {"confirmed", confirmed},
@@ -305,7 +312,7 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
             {"capture_fraction", found(result.capture_fraction)},
             {"supply_ratio", found(result.supply_ratio)},
             {"design", design_json(study, result.design)},
-            {"profile", profile_json(result)},
+            {"profile", profile_json(study, result)},
             {"coverage", found(result.coverage)},
             {"waste_fraction", found(result.waste_fraction)},
             {"waste_a_share", found(result.confirmations.empty() ? kUndefined : result.waste_a_share)},

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "optimise/chamber_fill.h"
+
 namespace gradwright {
 namespace {
 
@@ -257,6 +259,18 @@ Wording wording(const Study& study, const StudyResult& result) {
             fmt::format("x drift {:.3f}: the gradation changes along the spreading direction; the profile "
                         "averaged over x hides it",
                         drift));
+    const ChamberFill fill = chamber_fill(study, result.design);
+    if (measured && !fill.level()) {
+        std::vector<double> residual =
+            fill.levelled(proved ? result.confirmed.gi : result.predicted.profile.gi);
+        for (std::size_t b = 0; b < residual.size() && b < result.target.size(); ++b)
+            residual[b] -= result.target[b];
+        words.warnings.push_back(fmt::format(
+            "the chambers are filled unequally, which acts in the first layer only: once they are level the "
+            "same partition lays a {} of {} from the target, not {}",
+            name, gi_text(norm_of(result.misfit.norm, residual, result.weight)),
+            gi_text(result.misfit.value)));
+    }
     std::vector<std::string> unique;
     for (const std::string& warning : words.warnings)
         if (std::find(unique.begin(), unique.end(), warning) == unique.end()) unique.push_back(warning);

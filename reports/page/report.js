@@ -237,10 +237,10 @@
     map ? figure("w6", "GI over the platform", `Cells of ${mm(map.x_m.length > 1 ? map.x_m[1] - map.x_m[0] : null)} mm, ${map.of}. Dashed: the part's footprint. Grey: no powder.`, map_figure) : null,
     origin ? figure("w6", "Where the powder comes from", `Share of the laid solid by place in the dispenser and on the platform (${origin.layers} map layer${origin.layers === 1 ? "" : "s"}). A layer that takes the same mixture of places at every x has no drift.${heap ? " Measured on the longest strip and stretched to the machine." : ""}`, origin_figure) : null,
     origin ? figure("w12", "W(origin): the dispenser's share in the part", "Solid laid in the footprint that came from before x. The straight line would be a dispenser emptied evenly; the partition's first guess is read from this curve.", cumulative_figure) : null,
-    heap ? figure("w12", "How the heap forgets the order of the dispenser", `Dots: strips, by length and dosage. Zero: every grain of the layer comes from anywhere; below, from the dispenser's front, above, from its back. ${heap.law.fitted ? `Line and shade: a law that turns and fades, and its envelope; the strips scatter about it by ${gi(heap.law.collapse_error)}, and the design does not use it.` : "Too few strips for a law."}`, heap_figure,
+    heap ? figure("w12", "Order of the dispenser left in the layer, strip by strip", `Dots: strips, by length and dosage. Zero: every grain of the layer comes from anywhere; below, from the dispenser's front, above, from its back. ${heap.law.fitted ? `Dashed: a law of the heap's turnovers; the strips scatter about it by ${gi(heap.law.collapse_error)}, and the design does not use it.` : "Too few strips for a law."}`, heap_figure,
       h("details", {}, h("summary", {}, "What this rests on"), h("ul", {}, heap.rests_on.map((line) => h("li", {}, line))))) : null));
 
-  // Order (rms error of the fully mixed picture) of every strip against its turnovers, with the law, out to the machine.
+  // Order of every strip (rms error of the fully mixed picture) against its turnovers, with the law, out to the machine.
   function heap_figure(width) {
     const law = heap.law, top = 1.06 * heap.turnovers, steps = d3.range(1, top, top / 240);
     const envelope = (n) => law.amplitude * Math.exp(-n / law.memory), at = (n) => envelope(n) * Math.cos((2 * Math.PI * n) / law.turn + law.phase);
@@ -250,13 +250,12 @@
       x: { domain: [0, top], label: "turnovers of the heap, N = √(dispenser length / dose)" },
       y: { domain: [-reach, reach], label: "order left in the layer (GI)", clamp: true },
       marks: [
-        law.fitted ? Plot.areaY(steps, { x: (n) => n, y1: (n) => -envelope(n), y2: envelope, fill: "#5b6b7b", fillOpacity: 0.15, clip: true }) : null,
         Plot.ruleY([0], { stroke: "#888" }),
-        law.fitted ? Plot.line(steps, { x: (n) => n, y: at, stroke: "#5b6b7b", strokeWidth: 2, clip: true }) : null,
+        law.fitted ? Plot.line(steps, { x: (n) => n, y: (n) => (Math.abs(at(n)) > reach ? NaN : at(n)), stroke: "#5b6b7b", strokeWidth: 1.5, strokeDasharray: "4 4" }) : null,
         Plot.ruleX([heap.turnovers], { stroke: green, strokeWidth: 2, strokeDasharray: "5 4" }),
         Plot.text([heap.turnovers], { x: (n) => n, y: 0.9 * reach, text: () => "this machine", textAnchor: "end", dx: -6, fill: green }),
         Plot.dot(heap.strips, { x: "turnovers", y: "profile_order", r: 5, fill: "#111", stroke: "#fff", title: (s) => `${mm(s.dispenser_length_m)} mm, dosage ${s.dosage_factor.toFixed(2)}: ${s.profile_order.toFixed(3)}` }),
-        Plot.text(heap.strips, { x: "turnovers", y: "profile_order", text: (s) => `${+(1e3 * s.dispenser_length_m).toFixed(1)} mm × ${+s.dosage_factor.toFixed(1)}`, textAnchor: "start", dx: 9, fontSize: 11 }),
+        ...[0, 1].map((odd) => Plot.text(heap.strips.filter((s, i) => i % 2 === odd), { x: "turnovers", y: "profile_order", dy: odd ? 14 : -12, fontSize: 11, text: (s) => `${+(1e3 * s.dispenser_length_m).toFixed(1)} mm × ${+s.dosage_factor.toFixed(1)}` })),
       ].filter((m) => m),
     });
   }

@@ -66,7 +66,7 @@ def check_report(page, pictures):
     figures = re.findall(r"<figure[^>]*><h3>(.*?)</h3><div class=\"plot\">(.*?)</div><figcaption", run.stdout, re.S)
     titles = [title for title, drawing in figures if "<svg" in drawing or "<canvas" in drawing]
     # a machine extrapolated from strips has no grains of its own
-    own = ("How the heap forgets",) if (page.parent / "heap_order.svg").exists() else ("Before: the dispenser from above", "After: the layer from above")
+    own = ("Order of the dispenser",) if (page.parent / "heap_order.svg").exists() else ("Before: the dispenser from above", "After: the layer from above")
     for wanted in ("From the partition to the layer", "Target, predicted and confirmed GI", "x drift of each bin", "GI over the platform",
                    "Where the powder comes from", "Convergence of the misfit", *own):
         assert any(title.startswith(wanted) for title in titles), f"the page lacks the figure '{wanted}'; it has {titles}"

@@ -43,6 +43,11 @@ TEST(ChamberFill, a_premix_is_a_straight_line_and_doses_weigh_the_chambers) {
             EXPECT_NEAR(fill.side_share(fill.gi(s)), s, 1e-12);
             EXPECT_NEAR(fill.slope(s), (fill.gi(s + 1e-6) - fill.gi(s - 1e-6)) / 2e-6, 1e-8);
         }
+    // once level, the same share of chamber A's side is laid with equal doses
+    const std::vector<double> after = both.levelled({both.gi(0.25), std::nan(""), both.gi(1.0)});
+    EXPECT_NEAR(after[0], mixed.gi(0.25), 1e-12);
+    EXPECT_TRUE(std::isnan(after[1]));
+    EXPECT_NEAR(after[2], 0.9, 1e-12);
     EXPECT_EQ(mixed.side_share(0.1), 0);  // beyond what the chambers hold
     EXPECT_EQ(mixed.side_share(0.95), 1);
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "reports/heap_order_figure.h"
 #include "reports/result_json.h"
 #include "tests/reports/fixture.h"
 
@@ -52,6 +53,65 @@ json schema(const std::string& name) {
     std::ifstream file(std::string(GRADWRIGHT_SOURCE_DIR) + "/docs/schema/" + name);
     EXPECT_TRUE(file.good()) << name;
     return json::parse(file);
+}
+
+TEST(ResultJson, unequal_fills_state_what_the_level_chambers_lay) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    EXPECT_TRUE(to_json(study, result, {}).at("profile").at("levelled").is_null());
+    result.design.fill_fraction = {1.0, 0.96};  // a dose of 120 um against 80 um
+    const json object = to_json(study, result, {});
+    const json& levelled = object.at("profile").at("levelled");
+    ASSERT_EQ(levelled.size(), result.confirmed.gi.size());
+    for (std::size_t b = 0; b < levelled.size(); ++b) {
+        const double gi = result.confirmed.gi[b], share = 80 * gi / (80 * gi + 120 * (1 - gi));
+        if (!std::isfinite(gi)) {  // an empty bin
+            EXPECT_TRUE(levelled[b].is_null()) << b;
+            continue;
+        }
+        EXPECT_NEAR(levelled[b].get<double>(), share, 1e-9) << b;
+    }
+    EXPECT_THAT(object.at("warnings").dump(), testing::HasSubstr("filled unequally"));
+}
+
+TEST(ResultJson, an_extrapolated_design_says_what_it_rests_on) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    EXPECT_TRUE(to_json(study, result, {}).at("extrapolated").is_null());
+    result.confirmations.clear();
+    result.confirmed = {};
+    result.predicted.one_error = true;
+    result.waste_a_share = std::nan("");
+    ScaledHeap heap;
+    for (const double length : {3.2e-3, 6.4e-3}) {
+        HeapOrder strip;
+        strip.dispenser_length = length;
+        strip.dosage_factor = 3;
+        strip.turnovers = std::sqrt(length / 120e-6);
+        strip.profile = -0.2;
+        heap.strips.push_back(strip);
+    }
+    heap.turnovers = 28.9;
+    heap.longest = 6.4e-3;
+    heap.profile_error = 0.06;
+    heap.rests_on = {"dispenser length"};
+    result.extrapolated = heap;
+    const json object = to_json(study, result, {});
+    expect_required(schema("design.schema.json"), object, "");
+    expect_no_undefined_number(object, "");
+    EXPECT_EQ(at(object, "extrapolated.strips").size(), 2u);
+    EXPECT_EQ(at(object, "extrapolated.profile_error"), 0.06);
+    EXPECT_TRUE(at(object, "extrapolated.law.amplitude").is_null());  // not fitted
+    EXPECT_EQ(at(object, "predicted.extrapolated"), true);
+    EXPECT_TRUE(at(object, "waste_a_share").is_null());
+    EXPECT_THAT(at(object, "verdict_text").get<std::string>(), testing::StartsWith("Extrapolated"));
+    // the picture, with and without a law
+    EXPECT_THAT(heap_order_svg(heap), testing::HasSubstr("6.4 mm x 3"));
+    heap.law.fitted = true;
+    heap.law.amplitude = 0.5;
+    heap.law.memory = heap.law.turn = 10;
+    EXPECT_THAT(heap_order_svg(heap),
+                testing::AllOf(testing::HasSubstr("not used"), testing::Not(testing::HasSubstr("nan"))));
 }
 
 TEST(ResultJson, design_has_every_promised_name) {
