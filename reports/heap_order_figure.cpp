@@ -27,9 +27,9 @@ std::string heap_order_svg(const ScaledHeap& heap) {
         }
         axes.curve(n, law, {.colour = "#5b6b7b", .width = 1.5, .dash = "4 4"});
         figure.text(
-            left + 14, top + height - top - bottom - 14,
+            width - right - 14, height - bottom - 14,
             fmt::format("dashed: a law of turnovers, off by {:.3f}, not used", heap.law.collapse_error),
-            {.size = 12, .colour = "#5b6b7b"});
+            {.anchor = "end", .size = 12, .colour = "#5b6b7b"});
     }
     const std::vector<double> whole = {0, last}, zero = {0, 0};
     axes.curve(whole, zero, {.colour = "#888", .width = 1});
@@ -40,10 +40,12 @@ std::string heap_order_svg(const ScaledHeap& heap) {
     for (const HeapOrder& strip : heap.strips) {
         x.push_back(strip.turnovers);
         y.push_back(strip.profile);
-        // neighbours stand close: above and below in turn
-        figure.text(axes.px(strip.turnovers), axes.py(strip.profile) + (x.size() % 2 ? -11 : 20),
+        // neighbours stand close: to the left above and to the right below in turn
+        const bool left_above = x.size() % 2 == 1;
+        figure.text(axes.px(strip.turnovers) + (left_above ? -7 : 7),
+                    axes.py(strip.profile) + (left_above ? -8 : 17),
                     fmt::format("{:.3g} mm x {:.2g}", 1e3 * strip.dispenser_length, strip.dosage_factor),
-                    {.anchor = "middle", .size = 11});
+                    {.anchor = left_above ? "end" : "start", .size = 11});
     }
     axes.dots(x, y, 5, "#111");
     axes.frame("turnovers of the heap, N = sqrt(dispenser length / dose)", "order left in the layer (GI)",

@@ -255,7 +255,7 @@
         Plot.ruleX([heap.turnovers], { stroke: green, strokeWidth: 2, strokeDasharray: "5 4" }),
         Plot.text([heap.turnovers], { x: (n) => n, y: 0.9 * reach, text: () => "this machine", textAnchor: "end", dx: -6, fill: green }),
         Plot.dot(heap.strips, { x: "turnovers", y: "profile_order", r: 5, fill: "#111", stroke: "#fff", title: (s) => `${mm(s.dispenser_length_m)} mm, dosage ${s.dosage_factor.toFixed(2)}: ${s.profile_order.toFixed(3)}` }),
-        ...[0, 1].map((odd) => Plot.text(heap.strips.filter((s, i) => i % 2 === odd), { x: "turnovers", y: "profile_order", dy: odd ? 14 : -12, fontSize: 11, text: (s) => `${+(1e3 * s.dispenser_length_m).toFixed(1)} mm × ${+s.dosage_factor.toFixed(1)}` })),
+        ...[0, 1].map((odd) => Plot.text(heap.strips.filter((s, i) => i % 2 === odd), { x: "turnovers", y: "profile_order", dx: odd ? 7 : -7, dy: odd ? 12 : -9, textAnchor: odd ? "start" : "end", fontSize: 11, text: (s) => `${+(1e3 * s.dispenser_length_m).toFixed(1)} mm × ${+s.dosage_factor.toFixed(1)}` })),
       ].filter((m) => m),
     });
   }
