@@ -27,7 +27,7 @@ std::string heap_order_svg(const ScaledHeap& heap) {
         }
         axes.curve(n, law, {.colour = "#5b6b7b", .width = 1.5, .dash = "4 4"});
         figure.text(
-            width - right - 14, height - bottom - 14,
+            axes.px(heap.turnovers) - 8, height - bottom - 14,
             fmt::format("dashed: a law of turnovers, off by {:.3f}, not used", heap.law.collapse_error),
             {.anchor = "end", .size = 12, .colour = "#5b6b7b"});
     }
