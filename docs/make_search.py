@@ -54,6 +54,11 @@ def answer(name):
         return json.load(file)
 
 
+def objective(s):
+    """What every strategy minimises, but for waste and coverage: sqrt(misfit^2 + x_drift_weight drift^2), weight 0.5 in both studies."""
+    return None if s["x_drift"] is None else (s["confirmed_misfit"] ** 2 + 0.5 * s["x_drift"] ** 2) ** 0.5
+
+
 def number(value, text="{:.3f}"):
     return "" if value is None else text.format(value)
 
@@ -61,15 +66,15 @@ def number(value, text="{:.3f}"):
 def table(name):
     a = answer(name)
     rows = ["```\n./gradwright " + " ".join(map(shlex.quote, words(name))) + "\n```\n",
-            "| strategy | spreads to its design | seconds | confirmed misfit | 95 % bounds | noise floor | x drift | its own verdict | the judges' |",
-            "|---|---|---|---|---|---|---|---|---|"]
+            "| strategy | spreads to its design | seconds | confirmed misfit | 95 % bounds | noise floor | x drift | objective | its own verdict | the judges' |",
+            "|---|---|---|---|---|---|---|---|---|---|"]
     for s in a["strategies"]:
         if s["confirmed_misfit"] is None:
-            rows.append(f"| `{s['name']}` | {s['spreads']} | {number(s['seconds_cold'], '{:.0f}')} | | | | | {s['termination']}: {s['reason']} | |")
+            rows.append(f"| `{s['name']}` | {s['spreads']} | {number(s['seconds_cold'], '{:.0f}')} | | | | | | {s['termination']}: {s['reason']} | |")
             continue
         low, high = s["interval"]
         rows.append(f"| `{s['name']}` | {s['spreads']} | {number(s['seconds_cold'], '{:.0f}')} | {number(s['confirmed_misfit'])} | "
-                    f"{number(low)} to {number(high)} | {number(s['noise_floor'])} | {number(s['x_drift'])} | {s['own_verdict'].replace('_', ' ')} | {s['verdict'].replace('_', ' ')} |")
+                    f"{number(low)} to {number(high)} | {number(s['noise_floor'])} | {number(s['x_drift'])} | {number(objective(s))} | {s['own_verdict'].replace('_', ' ')} | {s['verdict'].replace('_', ' ')} |")
     return "\n".join(rows)
 
 
