@@ -441,11 +441,12 @@ void read_numerics(TomlReader& reader, Section& root, Study& study) {
     const toml::node* named = reader.root().at_path("numerics.reductions").node();
     const bool set = named && named->is_string() && !study.reductions.empty();
     Section time_step = section.sub("time_step");
-    scene.rayleigh_fraction = time_step.number(
-        "rayleigh_fraction",
-        set ? Default{kReducedRayleighFraction, "reductions \"reduced\": free by docs/speed-against-error.md"}
-            : Default{scene.rayleigh_fraction, "our default"},
-        Range::above_to(0, 1));
+    scene.rayleigh_fraction =
+        time_step.number("rayleigh_fraction",
+                         set ? Default{kReducedRayleighFraction,
+                                       "reductions \"reduced\": priced in docs/speed-against-error.md"}
+                             : Default{scene.rayleigh_fraction, "our default"},
+                         Range::above_to(0, 1));
     time_step.finish();
     const auto reduced = [&study](const char* name) {
         return std::find(study.reductions.begin(), study.reductions.end(), name) != study.reductions.end();
