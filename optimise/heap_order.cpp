@@ -130,10 +130,6 @@ HeapOrder heap_order(const Layer& layer, const Scene& scene, double low, double 
     order.turnovers = heap_turnovers(scene);
     order.seed = layer.packing_seed;
     order.capture_fraction = layer.capture_fraction();
-    order.packing_fraction = layer.packing_fraction();
-    order.bed_packing = layer.bed_packing;
-    if (layer.dosed_solid_volume > 0)
-        order.waste_fraction = layer.overflow_solid_volume / layer.dosed_solid_volume;
     order.coverage =
         coverage(layer, {low * layer.platform_length, high * layer.platform_length, 0, layer.width});
 
@@ -185,13 +181,11 @@ OrderLaw fit_order_law(std::span<const double> turnovers, std::span<const double
     const std::size_t strips = turnovers.size();
     OrderLaw law;
     law.strips = int(strips);
-    law.longest_miss = law.longest_envelope = std::numeric_limits<double>::quiet_NaN();
     if (law.strips <= kParameters) return law;
     law = law_of(best_fit(turnovers, order), law.strips);
     double sum = 0;
     for (std::size_t k = 0; k < strips; ++k) sum += std::pow(order[k] - law.at(turnovers[k]), 2);
     law.collapse_error = std::sqrt(sum / double(law.strips - kParameters));
-    law.longest_miss = law.longest_envelope = std::numeric_limits<double>::quiet_NaN();
     if (law.strips > kParameters + 1) {
         const std::size_t longest =
             std::size_t(std::max_element(turnovers.begin(), turnovers.end()) - turnovers.begin());
@@ -222,7 +216,6 @@ void carry_extrapolation(const ScaledHeap& heap, Evaluation& evaluation) {
     };
     widen(evaluation.profile.standard_error, heap.profile_error);
     widen(evaluation.drift.standard_error, heap.drift_error);
-    evaluation.drift.noise_floor = std::hypot(evaluation.drift.noise_floor, heap.drift_error);
     evaluation.profile.degrees = evaluation.drift.degrees = kModes;
     evaluation.one_error = true;
 }

@@ -10,20 +10,18 @@
 // first, but never less than the largest drift of any strip: it turns with length, so that its phase on the
 // machine is not known.
 //
-// Beside it stands a reduced model of a heap that rolls: the order left in the layer,
-//   profile order = sqrt(2) int (W - xi) sin(pi xi) dxi: the slowest mode, with its sign (> 0: laid from the
-//   back of the
-//                   dispenser), as an rms over xi; nothing left of it = every grain from anywhere, the
-//                   kinematic picture;
-//   profile rest  = rms of what W - xi has besides that mode;
-//   drift order   = rms over xi of the drift of W;
-// would turn and fade with the turnovers N, the way in heap lengths,
-//   profile order = A exp(-N / N_memory) cos(2 pi N / N_turn + phase),   N = L_d / sqrt(h L_d) = sqrt(L_d /
-//   h),
-// h the dose height. Its collapse error says how far strips of all lengths and doses lie from the one curve.
-// It is fitted and told, and not used: docs/scale-up.md shows why. Source: our own measurements,
-// docs/scale-up.md. The lateral way grows as in kinematic_evaluator.h.
+// Beside it stands a reduced model of a heap that rolls. The order left in the layer is
+//   profile order = sqrt(2) int (W - xi) sin(pi xi) dxi,
+// the slowest mode as an rms over xi, > 0 when laid from the back of the dispenser; nothing left of it is
+// every grain from anywhere, the kinematic picture. Profile rest is the rms of what W - xi has besides that
+// mode, and drift order the rms over xi of the drift of W. With N turnovers the order would turn and fade,
+//   profile order = A exp(-N / N_memory) cos(2 pi N / N_turn + phase),
+//   N = L_d / sqrt(h L_d) = sqrt(L_d / h), the way in heap lengths, h the dose height.
+// Its collapse error says how far strips of all lengths and doses lie from the one curve. It is fitted and
+// told, and not used: docs/scale-up.md shows why. Source: our own measurements, docs/scale-up.md. The lateral
+// way grows as in kinematic_evaluator.h.
 #pragma once
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,7 +42,7 @@ struct HeapOrder {
     double profile = 0, profile_rest = 0, drift = 0;  ///< orders [-]
     std::vector<double> share, share_drift;           ///< W - xi and the drift of W, xi = 1/40 .. 39/40
     double lateral = 0;  ///< variance of the lateral way over D50^2 and turnovers [-]
-    double capture_fraction = 0, packing_fraction = 0, waste_fraction = 0, bed_packing = 0, coverage = 0;
+    double capture_fraction = 0, coverage = 0;
     long grains = 0;
     double seconds_cold = 0;
     std::uint64_t seed = 0;
@@ -62,7 +60,8 @@ struct OrderLaw {
     double collapse_error = 0;
     /// What the law of the shorter strips says of the longest minus what that one measured, and that law's
     /// envelope there [-]. NaN without enough strips.
-    double longest_miss = 0, longest_envelope = 0;
+    double longest_miss = std::numeric_limits<double>::quiet_NaN(),
+           longest_envelope = std::numeric_limits<double>::quiet_NaN();
     int strips = 0;
     bool fitted = false;
     double at(double turnovers) const;

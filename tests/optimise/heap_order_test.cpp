@@ -74,7 +74,6 @@ TEST(HeapOrder, a_mixed_heap_has_none) {
     EXPECT_NEAR(order.profile_rest, 0, 0.01);
     EXPECT_NEAR(order.drift, 0, 0.01);
     EXPECT_NEAR(order.capture_fraction, 0.5, 1e-12);
-    EXPECT_NEAR(order.waste_fraction, 0.5, 1e-12);
     EXPECT_NEAR(order.turnovers, std::sqrt(3.2 / 0.12), 1e-12);
     EXPECT_NEAR(order.dosage_factor, 3, 1e-12);
     // 40 um either way: variance 1600 um2 = D50^2
