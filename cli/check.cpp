@@ -11,6 +11,7 @@
 #include "cli/common.h"
 #include "optimise/design_run.h"
 #include "optimise/heap_order.h"
+#include "optimise/motion.h"
 #include "reports/json_support.h"
 #include "reports/result_json.h"
 
@@ -225,9 +226,7 @@ StudyEstimate estimate(const Study& study, int threads) {
     result.supply_ratio = supply_ratio(own, kAssumedBedPacking, study.steady_packing);
     const DesignSpace& space = study.design_space;
     result.partition_variables = free_count(space);
-    result.motion_variables = int(space.dosage_factor.free) + int(space.land.free) +
-                              int(space.footprint_offset.free) + int(space.fill_fraction[0].free) +
-                              int(space.fill_fraction[1].free);
+    for (const MotionVariable& motion : kMotionVariables) result.motion_variables += motion.in(space).free;
     return result;
 }
 

@@ -126,12 +126,18 @@ Design read_design(const std::string& file, const Study& study) {
         const nlohmann::json fill = object.value("fill_fraction", nlohmann::json::object());
         design.fill_fraction = {fill.value("A", design.fill_fraction[0]),
                                 fill.value("B", design.fill_fraction[1])};
+        const nlohmann::json dose = object.value("dose", nlohmann::json::object());
+        design.dose = {dose.value("A", design.dose[0]), dose.value("B", design.dose[1])};
         design.dosage_factor = object.value("dosage_factor", design.dosage_factor);
         design.land = object.value("land_m", design.land);
+        design.blade_speed = object.value("blade_speed_m_s", design.blade_speed);
+        design.layer_thickness = object.value("layer_thickness_m", design.layer_thickness);
         design.footprint_offset = object.value("footprint_offset_m", design.footprint_offset);
         for (const double fraction : design.fill_fraction)
             if (!(fraction > 0 && fraction <= 1))
                 bad("fill_fraction", fmt::format("{}", fraction), "is above 0 and at most 1");
+        for (const double dose_of : design.dose)
+            if (!(dose_of > 0)) bad("dose", fmt::format("{}", dose_of), "is above 0");
         if (!(design.dosage_factor > 0))
             bad("dosage_factor", fmt::format("{}", design.dosage_factor), "is above 0");
         if (!(design.land >= 0)) bad("land_m", fmt::format("{}", design.land), "is not negative");

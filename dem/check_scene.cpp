@@ -51,7 +51,7 @@ std::vector<SceneProblem> validate(const Scene& s) {
             fatal(
                 fmt::format("chamber {} stands {:.0f} um below the rim but the floor rises only {:.0f} um, "
                             "so it is starved: raise "
-                            "design_space.fill_fraction.{} or the dosage factor",
+                            "design_space.fill_fraction.{}, its dose or the dosage factor",
                             k == 0 ? 'A' : 'B', s.headspace[k] * um, s.dose_height * um, k == 0 ? 'A' : 'B'));
     if (s.gap < d_max)
         warn(fmt::format(

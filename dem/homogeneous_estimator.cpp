@@ -150,13 +150,16 @@ double PooledGrains::total_volume() const {
     return std::accumulate(volume.begin(), volume.end(), 0.0);
 }
 
-PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high) {
+PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high,
+                         std::span<const double> share) {
     PooledGrains pooled;
     pooled.x_low = x_low;
     pooled.x_high = x_high;
     pooled.layers = static_cast<int>(layers.size());
     for (int l = 0; l < pooled.layers; ++l) {
         const Layer& layer = layers[l];
+        if (!share.empty() && !(share[l] > 0)) continue;
+        const std::size_t first = pooled.size();
         for (std::size_t i = 0; i < layer.size(); ++i) {
             if (!(layer.deposit_x[i] >= x_low && layer.deposit_x[i] < x_high)) continue;
             pooled.origin_x.push_back(layer.origin_x[i]);
@@ -165,6 +168,10 @@ PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_h
             pooled.volume.push_back(layer.volume[i]);
             pooled.layer.push_back(l);
         }
+        if (share.empty()) continue;
+        const auto own = std::span(pooled.volume).subspan(first);
+        const double sum = std::accumulate(own.begin(), own.end(), 0.0);
+        for (double& volume : own) volume *= share[l] / sum;
     }
     return pooled;
 }

@@ -49,8 +49,10 @@ struct PooledGrains {
     /// among strips is no replicate of them.
     bool replicates() const;
 };
-/// Grains with deposit_x in [x_low, x_high).
-PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high);
+/// Grains with deposit_x in [x_low, x_high). `share`: what each layer counts in the pool, whatever it holds
+/// [-], sum 1; layers with share 0 are left out. Empty: every grain by its volume.
+PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high,
+                         std::span<const double> share = {});
 /// Those of `grains` with deposit_x in [x_low, x_high).
 PooledGrains part_of(const PooledGrains& grains, double x_low, double x_high);
 

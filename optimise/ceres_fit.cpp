@@ -166,7 +166,8 @@ std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const
 
 }  // namespace
 
-FitProblem::FitProblem(const Study& study, const Design& design, std::span<const Layer> layers)
+FitProblem::FitProblem(const Study& study, const Design& design, std::span<const Layer> layers,
+                       std::span<const double> share)
     : bins(study.bins),
       target(bin_targets(study)),
       weight(bin_weights(study)),
@@ -175,7 +176,7 @@ FitProblem::FitProblem(const Study& study, const Design& design, std::span<const
       norm(study.objective.norm),
       x_drift_weight(study.objective.x_drift_weight) {
     const Footprint footprint = footprint_of(study, design);
-    grains = pool_grains(layers, footprint.x_low, footprint.x_high);
+    grains = pool_grains(layers, footprint.x_low, footprint.x_high, share);
     thirds = thirds_of(grains);
 }
 

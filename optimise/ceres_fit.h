@@ -31,7 +31,9 @@ struct FitProblem {
     double x_drift_weight = 0;  ///< [-], >= 0; 0 leaves the drift to be only reported
 
     /// `layers` = the map, footprint shifted as `design` says; targets and weights of the study.
-    FitProblem(const Study& study, const Design& design, std::span<const Layer> layers);
+    /// `share` as in pool_grains.
+    FitProblem(const Study& study, const Design& design, std::span<const Layer> layers,
+               std::span<const double> share = {});
     bool usable() const;  ///< grains in the footprint and at least one counting bin
 
     /// Residual vector as above, for T = double or ceres::Jet. `smoothing` = half width of the label kernel

@@ -15,10 +15,11 @@ double ChamberFill::side_share(double gi) const {
 }
 
 std::vector<double> ChamberFill::levelled(const std::vector<double>& gi) const {
+    ChamberFill level = *this;
+    level.dose = later;
     std::vector<double> result;
     for (const double value : gi)
-        result.push_back(std::isfinite(value) ? share_a[1] + (share_a[0] - share_a[1]) * side_share(value)
-                                              : value);
+        result.push_back(std::isfinite(value) ? level.gi(side_share(value)) : value);
     return result;
 }
 
@@ -40,17 +41,15 @@ void ChamberFill::apply(GradationMap& map) const {
     for (double& cell : map.gi) cell = gi(cell);
 }
 
-ChamberFill chamber_fill(const Study& study, const std::array<double, 2>& fill_fraction, double dose_height) {
+ChamberFill chamber_fill(const Study& study, const Design& design) {
     ChamberFill fill;
     fill.share_a = study.scene.share_a;
-    for (int chamber = 0; chamber < 2; ++chamber)
-        fill.dose[chamber] = dose_height - (1 - fill_fraction[chamber]) * study.scene.dispenser_depth;
-    if (fill_fraction[0] == fill_fraction[1]) fill.dose = {1, 1};
+    const Scene scene = scene_of(study, design, false, 0);
+    if (design.fill_fraction[0] != design.fill_fraction[1] || design.dose[0] != design.dose[1])
+        for (int chamber = 0; chamber < 2; ++chamber)
+            fill.dose[chamber] = scene.dose_height - scene.headspace[chamber];
+    fill.later = design.dose;
     return fill;
-}
-
-ChamberFill chamber_fill(const Study& study, const Design& design) {
-    return chamber_fill(study, design.fill_fraction, scene_of(study, design, false, 0).dose_height);
 }
 
 }  // namespace gradwright

@@ -2,12 +2,14 @@
 //
 // A map answers with the share s of the laid solid that came from chamber A's side. With a premix the powder
 // of chamber k holds a share m_k of powder A; with unequal levels chamber k stands d_k = h - c_k above the
-// rim in the pass (physics.md 1.3), so that much less of it is there to be laid. To first order (the level
+// rim in the pass (physics.md 1.3), c_k its headspace and what its own piston rises less than the other's, so
+// that much less of it is there to be laid. To first order (the level
 // step itself moves no powder) both act bin by bin,
 //   GI = (s d_A m_A + (1 - s) d_B m_B) / (s d_A + (1 - s) d_B),
 // which is s itself with pure powders and equal levels. Exact for a premix of powders that move alike.
 #pragma once
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "dem/gradation.h"
@@ -18,9 +20,14 @@ namespace gradwright {
 struct ChamberFill {
     std::array<double, 2> share_a = {1, 0};  ///< m: share of powder A in the powder of chamber A, B [-]
     std::array<double, 2> dose = {1, 1};     ///< d, in any unit
+    std::array<double, 2> later = {1, 1};    ///< d of every later pass: of the pistons alone
 
     bool pure() const { return share_a[0] == 1 && share_a[1] == 0; }
     bool level() const { return dose[0] == dose[1]; }
+    /// Are later passes dosed in the same ratio?
+    bool lasts() const {
+        return std::fabs(dose[0] * later[1] - dose[1] * later[0]) <= 1e-9 * dose[0] * later[1];
+    }
 
     /// GI of a bin whose share of chamber A is s, for double or ceres::Jet.
     template <class T>
@@ -41,8 +48,8 @@ struct ChamberFill {
     /// Share of chamber A that gives this GI; 0 or 1 beyond what the two powders span.
     double side_share(double gi) const;
 
-    /// GI that the same partition lays once the chambers are level: fill fractions act in the first layer
-    /// only (physics.md 1.3).
+    /// GI that the same partition lays in later passes: fill fractions act in the first only, pistons of
+    /// their own in all (physics.md 1.3).
     std::vector<double> levelled(const std::vector<double>& gi) const;
 
     /// Shares into GI, with their standard errors and cells.
@@ -50,8 +57,7 @@ struct ChamberFill {
     void apply(GradationMap& map) const;
 };
 
-/// Of a study with these fill fractions, dosage as in `dose_height` [m].
-ChamberFill chamber_fill(const Study& study, const std::array<double, 2>& fill_fraction, double dose_height);
+/// Of the chambers of a study as a design fills and lifts them.
 ChamberFill chamber_fill(const Study& study, const Design& design);
 
 }  // namespace gradwright

@@ -8,6 +8,7 @@
 #include "optimise/kinematic_evaluator.h"
 #include "optimise/lammps_spread.h"
 #include "optimise/map_evaluator.h"
+#include "optimise/motion.h"
 #include "optimise/partition_family.h"
 
 namespace gradwright {
@@ -41,11 +42,7 @@ Design start_design(const Study& study) {
     const double length = study.scene.dispenser_length, width = study.dispenser_width;
     Design design;
     design.family = space.family;
-    for (int chamber = 0; chamber < 2; ++chamber)
-        design.fill_fraction[chamber] = space.fill_fraction[chamber].value;
-    design.dosage_factor = space.dosage_factor.value;
-    design.land = space.land.value;
-    design.footprint_offset = space.footprint_offset.value;
+    for (const MotionVariable& motion : kMotionVariables) motion.of(design) = motion.in(space).value;
     if (space.family == Family::straight) {
         design.partition = straight_partition(length, width, space.angle_deg.value * std::numbers::pi / 180,
                                               space.offset.value);

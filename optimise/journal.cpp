@@ -108,7 +108,10 @@ const auto health_fields = [](auto io, auto& health) {
 const auto design_fields = [](auto io, auto& design) {
     io("fill_fraction", design.fill_fraction);
     io("dosage_factor", design.dosage_factor);
+    io("dose", design.dose);
     io("land_m", design.land);
+    io("blade_speed_m_s", design.blade_speed);
+    io("layer_thickness_m", design.layer_thickness);
     io("footprint_offset_m", design.footprint_offset);
     io("parameters", design.parameters);
 };

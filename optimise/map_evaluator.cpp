@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "dem/homogeneous_estimator.h"
 #include "optimise/chamber_fill.h"
@@ -14,6 +15,17 @@ namespace gradwright {
 namespace {
 
 constexpr int kResamples = 200;  // bootstrap resamples of a quoted number
+
+/// Without labels there are no chambers: a level step would follow the partition, so the map takes the mean
+/// level, and one floor that rises by the mean dose.
+Design levelled(const Design& design) {
+    Design level = design;
+    const auto& [fill, dose] = std::tie(design.fill_fraction, design.dose);
+    if (fill[0] != fill[1]) level.fill_fraction.fill(0.5 * (fill[0] + fill[1]));
+    if (dose[0] != 1 || dose[1] != 1) level.dosage_factor *= 0.5 * (dose[0] + dose[1]);
+    level.dose = {1, 1};
+    return level;
+}
 
 }  // namespace
 
@@ -49,20 +61,45 @@ MapEvaluator::MapEvaluator(const Study& study, SpreadRunner& runner, Journal* jo
     : study_(study), runner_(runner), journal_(journal) {}
 
 MapEvaluator::Key MapEvaluator::key_of(const Design& design, std::uint64_t seed) const {
-    return {design.dosage_factor, design.land, design.fill_fraction[0], design.fill_fraction[1],
-            double(seed)};
+    const Design level = levelled(design);
+    // rounded: chambers that only trade powder have the same mean but for the last bits
+    const auto rounded = [](double value) { return std::round(value * 1e10); };
+    return {rounded(level.dosage_factor),    rounded(level.land),
+            rounded(level.fill_fraction[0]), rounded(level.blade_speed),
+            rounded(level.layer_thickness),  double(seed)};
 }
 
 void OriginMap::average() {
     capture_fraction = packing_fraction = waste_fraction = bed_packing = 0;
-    const double n = double(layers.size());
-    for (const Layer& layer : layers) {
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        const Layer& layer = layers[l];
+        const double n = 1 / share_of(l);
         capture_fraction += layer.capture_fraction() / n;
         packing_fraction += layer.packing_fraction() / n;
         bed_packing += layer.bed_packing / n;
         if (layer.dosed_solid_volume > 0)
             waste_fraction += layer.overflow_solid_volume / layer.dosed_solid_volume / n;
     }
+}
+
+OriginMap MapEvaluator::between(const std::vector<Design>& motions, const std::vector<double>& share) {
+    OriginMap map;
+    map.health.status = "ok";
+    map.told = true;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        if (!(share[k] > 0)) continue;
+        const OriginMap& part = map_of(motions[k]);
+        for (const Layer& layer : part.layers) {
+            map.layers.push_back(layer);
+            map.share.push_back(share[k] / double(part.layers.size()));
+        }
+        if (map.seed == 0) {
+            map.scene = part.scene;
+            map.seed = part.seed;
+        }
+    }
+    map.average();
+    return map;
 }
 
 bool moves_alike(const Study& study) {
@@ -103,11 +140,7 @@ Evaluation MapEvaluator::with_powder_b(const Design& design) {
 void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed, int count, int powder) {
     if (study_.scale_up.on()) return extrapolate(map, design);
     map.health.status = "ok";
-    Design level = design;
-    // Without labels there are no chambers: a level step would follow the partition, so the map takes the
-    // mean level.
-    const double mean_fill = 0.5 * (design.fill_fraction[0] + design.fill_fraction[1]);
-    level.fill_fraction = {mean_fill, mean_fill};
+    const Design level = levelled(design);
     for (int i = 0; i < count; ++i) {
         const std::uint64_t packing_seed = seed == 0 ? map_seed(study_.seed, i) : seed + 2 * i;
         Scene scene = scene_of(study_, level, true, packing_seed);
@@ -139,9 +172,10 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
         map.state_hash = map.state_hash.empty() ? result.state_hash
                                                 : fmt::format("{}+{}", map.state_hash, result.state_hash);
     }
-    if (design.fill_fraction[0] != design.fill_fraction[1])
+    if (design.fill_fraction[0] != design.fill_fraction[1] || design.dose[0] != design.dose[1])
         map.health.warnings.push_back(
-            "the map was spread with level chambers: what unequal fills lay is reckoned from it by their "
+            "the map was spread with level chambers: what unequal fills or doses lay is reckoned from it by "
+            "their "
             "shares "
             "of the dose, and the step between the levels is only in the confirmation");
     map.average();
@@ -223,7 +257,7 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         options.seed = map.seed;
         // what was a block on the strip is one on the machine
         if (map.heap) options.block *= map.heap->length / map.heap->longest;
-        const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high);
+        const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high, map.share);
         evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
         evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
         if (!grains.replicates()) allow_for_beds(evaluation, kBedsOverBlocksMap);
@@ -232,11 +266,11 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         fill.apply(evaluation.profile, evaluation.drift);
         Footprint in_strip = footprint;
         in_strip.y_low = 0;
-        for (const Layer& layer : map.layers) {
-            in_strip.y_high = layer.width;
+        for (std::size_t l = 0; l < map.layers.size(); ++l) {
+            in_strip.y_high = map.layers[l].width;
             // stretched grains lie far apart: how they cover is known from the strip
-            evaluation.coverage += (map.heap ? map.heap->nearest.coverage : coverage(layer, in_strip)) /
-                                   double(map.layers.size());
+            evaluation.coverage +=
+                (map.heap ? map.heap->nearest.coverage : coverage(map.layers[l], in_strip)) * map.share_of(l);
         }
         if (quoted) {
             describe_turnover(map, evaluation);

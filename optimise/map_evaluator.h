@@ -17,6 +17,9 @@ namespace gradwright {
 struct OriginMap {
     RunHealth health;  ///< of the first spread that failed, else ok
     std::vector<Layer> layers;
+    /// Of a map that was not spread but lies between others: what each layer counts, sum 1. Empty: a map that
+    /// was spread.
+    std::vector<double> share;
     std::vector<BedFacts> beds;
     Scene scene;  ///< of the first strip
     std::uint64_t seed = 0;
@@ -25,6 +28,9 @@ struct OriginMap {
     long grains = 0, steps = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;
     std::string state_hash;
+    double share_of(std::size_t layer) const {
+        return share.empty() ? 1 / double(layers.size()) : share[layer];
+    }
     /// Sets the means from the layers.
     void average();
     /// A machine extrapolated from strips: the layer is the longest one's, stretched, and its errors are
@@ -49,6 +55,11 @@ class MapEvaluator : public Evaluator {
     Evaluation quick(const Design& design);
     /// Runs the strips when these motion variables are new. The reference stays valid.
     OriginMap& map_of(const Design& design, std::uint64_t seed = 0);
+    /// A map between those of `motions`, which were spread: each counts its share, sum 1, so that the GI of
+    /// any partition is the same mean of theirs. Not kept, costs no spread.
+    OriginMap between(const std::vector<Design>& motions, const std::vector<double>& share);
+    /// `quick` on a map of that kind.
+    Evaluation quick(const Design& design, OriginMap& map) { return with(design, map, false); }
     /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
     /// `design`: its origins are as good as the strips'. `state_hash`: of that spread.
     void learn(const Design& design, const Layer& layer, const std::string& state_hash);
@@ -57,7 +68,7 @@ class MapEvaluator : public Evaluator {
     Evaluation with_powder_b(const Design& design);
 
   private:
-    using Key = std::array<double, 5>;
+    using Key = std::array<double, 6>;
     Key key_of(const Design& design, std::uint64_t seed) const;
     Evaluation with(const Design& design, OriginMap& map, bool quoted);
 

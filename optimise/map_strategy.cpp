@@ -7,10 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "optimise/bounded_search.h"
 #include "optimise/ceres_fit.h"
 #include "optimise/design_run.h"
 #include "optimise/kinematic_evaluator.h"
+#include "optimise/motion.h"
+#include "optimise/motion_search.h"
 #include "optimise/strategy_support.h"
 
 namespace gradwright {
@@ -20,8 +21,6 @@ constexpr double kSignificance = 0.05;  // of the equality test that calls for a
 /// Of a tolerance: beyond this an undecided design is hardly good enough, and what its spread has taught is
 /// worth more than a second look at it.
 constexpr double kBorderline = 0.75;
-constexpr int kReserve =
-    2;  // spreads that a motion search leaves for confirmations, where the budget has them
 
 /// What the confirmations have taught: confirmed - map, smoothed, per bin.
 struct Correction {
@@ -55,7 +54,7 @@ class MapStrategy {
     StudyResult run() {
         motion_ = start_design(study_);
         run_.enter("map");
-        search_motion();
+        motion_ = MotionSearch(run_, motion_).best();
         OriginMap& map = run_.map.map_of(motion_);
         run_.result.map_layers = map.layers;
         run_.result.beds = map.beds;
@@ -184,111 +183,6 @@ class MapStrategy {
                         expected.drift_misfit.interval_high / study_.objective.x_drift_tolerance);
     }
 
-    /// Outer search over the variables that need a new spread; leaves the best in motion_, footprint placed.
-    void search_motion() {
-        const DesignSpace& space = study_.design_space;
-        const Variable* variables[2] = {&space.dosage_factor, &space.land};
-        const int reserve = std::min(kReserve, std::max(1, study_.max_spreads - study_.map_spreads));
-        const int points = std::max(1, (study_.max_spreads - reserve) / study_.map_spreads);
-        const bool free = space.dosage_factor.free || space.land.free;
-        if (!free || points == 1) {
-            if (free)
-                run_.result.warnings.push_back(
-                    "dosage factor and land stay at their start: run.max_spreads leaves no spread to search "
-                    "them");
-            place_footprint();
-            return;
-        }
-        const Design start = motion_;
-        Design best = start;
-        double best_objective = kNotEvaluable;
-        BoundedSearch search;
-        for (const Variable* variable : variables) {
-            search.low.push_back(0);
-            search.high.push_back(variable->free ? 1 : 0);
-            const double room = variable->high - variable->low;
-            search.start.push_back(variable->free && room > 0 ? (variable->value - variable->low) / room : 0);
-            search.step.push_back(0.25);
-        }
-        search.budget = points;
-        search.x_tolerance = 0.02;  // of the range: a map cannot tell nearer motions apart
-        search.stop = [&] {
-            return run_.runner.stopped() || run_.spreads_left() - study_.map_spreads < reserve;
-        };
-        const auto objective = [&](const std::vector<double>& x) {
-            motion_ = start;
-            double* numbers[2] = {&motion_.dosage_factor, &motion_.land};
-            for (int i = 0; i < 2; ++i)
-                if (variables[i]->free)
-                    *numbers[i] = variables[i]->low + x[i] * (variables[i]->high - variables[i]->low);
-            place_footprint();
-            const Evaluation evaluation = nested();
-            run_.record(
-                "map", evaluation,
-                fmt::format("dosage factor {:.3g}, land {:.3g} mm, footprint {:+.3g} mm",
-                            motion_.dosage_factor, motion_.land * 1e3, motion_.footprint_offset * 1e3));
-            if (evaluation.objective < best_objective || best_objective >= kNotEvaluable) {
-                best_objective = evaluation.objective;
-                best = motion_;
-            }
-            return evaluation.objective;
-        };
-        const BoundedSearchResult found = minimise(objective, search);
-        run_.result.given_used.emplace_back("motion search",
-                                            fmt::format("{} points, {}", found.evaluations, found.native));
-        motion_ = best;
-    }
-
-    /// The motion's worth: its own best partition, judged on its map with waste and coverage.
-    Evaluation nested() {
-        Design design = motion_;
-        const OriginMap& map = run_.map.map_of(motion_);
-        if (map.health.ok() && study_.design_space.partition_free) {
-            const FitProblem problem(study_, motion_, map.layers);
-            const FitResult fit = fit_partition(study_, study_.design_space, motion_, problem, quick_fit());
-            if (fit.ok) design = fit.design;
-        }
-        return run_.map.quick(design);
-    }
-
-    /// The footprint's place needs no spread: the map is read at another x. Coarse grid, then a finer one
-    /// around its best.
-    void place_footprint() {
-        const Variable& offset = study_.design_space.footprint_offset;
-        if (!offset.free) return;
-        // Kept whole on the platform: a cut footprint would be a smaller part, not a better place.
-        double low = std::max(offset.low, -study_.footprint.x_low);
-        double high = std::min(offset.high, study_.scene.platform_length - study_.footprint.x_high);
-        if (!(high > low) || !run_.map.map_of(motion_).health.ok()) return;
-        constexpr int kGrid = 9;
-        double best_offset = std::clamp(motion_.footprint_offset, low, high), best = kNotEvaluable;
-        for (int pass = 0; pass < 2; ++pass) {
-            const double step = (high - low) / (kGrid - 1);
-            for (int i = 0; i < kGrid; ++i) {
-                motion_.footprint_offset = low + i * step;
-                const double objective = nested().objective;
-                if (objective < best) {
-                    best = objective;
-                    best_offset = motion_.footprint_offset;
-                }
-            }
-            low = std::max(low, best_offset - step);
-            high = std::min(high, best_offset + step);
-        }
-        motion_.footprint_offset = best_offset;
-    }
-
-    FitOptions quick_fit() const {
-        FitOptions options;
-        options.kernels = {50e-6};
-        options.iterations = 20;
-        options.finalists = 1;
-        options.perturbed_starts = 1;
-        options.polish_evaluations = 100;
-        options.seed = study_.seed;
-        return options;
-    }
-
     /// The best straight partition on the same map, and the kinematic picture of the design found.
     void stated_comparisons() {
         DesignSpace straight;
@@ -325,7 +219,7 @@ class MapStrategy {
     /// Powders that move alike between periodic sides, level chambers: a spread's origins tell what a strip's
     /// do.
     bool full_spreads_are_maps(const ConfirmedDesign& round) const {
-        return alike_ && motion_.fill_fraction[0] == motion_.fill_fraction[1] && !round.layers.empty() &&
+        return alike_ && chamber_fill(study_, motion_).level() && !round.layers.empty() &&
                round.layers.front().periodic;
     }
 
@@ -375,7 +269,7 @@ class MapStrategy {
             "floor {:.3f})",
             misfit.value, misfit.noise_floor, drift.value, drift.noise_floor);
         const DesignSpace& space = study_.design_space;
-        const bool motion_free = space.dosage_factor.free || space.land.free || space.footprint_offset.free;
+        const bool motion_free = !free_motion(space).empty();
         if (misfit.debiased > misfit.tolerance || drift.debiased > drift.tolerance)
             limit +=
                 motion_free

@@ -11,6 +11,7 @@
 
 #include "optimise/chamber_fill.h"
 #include "optimise/evaluation.h"
+#include "optimise/motion.h"
 
 namespace gradwright {
 namespace {
@@ -356,8 +357,10 @@ bool goes_with(const Study& study, const std::function<double(double)>& along) {
 
 /// The chambers as the study starts.
 ChamberFill fill_of(const Study& study) {
-    const auto& start = study.design_space.fill_fraction;
-    return chamber_fill(study, {start[0].value, start[1].value}, study.scene.dose_height);
+    Design start;
+    for (const MotionVariable& motion : kMotionVariables)
+        motion.of(start) = motion.in(study.design_space).value;
+    return chamber_fill(study, start);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "optimise/ceres_fit.h"
 #include "optimise/journal.h"
 #include "optimise/map_evaluator.h"
+#include "optimise/motion.h"
 #include "optimise/spread_runner.h"
 
 namespace gradwright {
@@ -132,11 +133,9 @@ class Reacher {
                 "the dosage factor",
                 reach_.coverage, study_.objective.min_coverage));
         const DesignSpace& space = study_.design_space;
-        if (space.dosage_factor.free || space.land.free || space.footprint_offset.free)
-            reach_.remarks.push_back(
-                "dosage_factor, land and footprint_offset stay at their start: `design` searches them, and "
-                "may "
-                "reach more");
+        if (const std::string names = free_motion(space); !names.empty())
+            reach_.remarks.push_back(names +
+                                     " stay at their start: `design` searches them, and may reach more");
         if (!moves_alike(study_))
             reach_.remarks.push_back(
                 "the powders differ in size or density: a map without labels is only a first guess");

@@ -296,6 +296,7 @@ void read_process(TomlReader& reader, Section& root, Study& study) {
     const std::string rule_of_gap = gap_text ? gap_text->get() : (fused ? "steady" : "layer");
     std::vector<std::string> names = {"steady", "layer"};
     study.gap_steady = rule_of_gap == "steady";
+    study.gap_layer = rule_of_gap == "layer";
     double length = scene.layer_thickness;
     if (gap.node && !gap_text) {
         process.problem(gap, "gap", gap.node->is_number() ? "has no unit" : "must be a string",

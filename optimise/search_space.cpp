@@ -23,11 +23,10 @@ SearchSpace::SearchSpace(const Study& study, const PartitionFamily& family, cons
     const auto free = [](const Variable& variable, bool moves) {
         return moves && variable.free && variable.high > variable.low;
     };
-    const std::array<std::pair<const Variable*, bool>, 3> variables = {
-        {{&space.dosage_factor, all}, {&space.land, all}, {&offset, true}}};
     for (std::size_t i = 0; i < motion_.size(); ++i) {
-        const auto& [variable, may_move] = variables[i];
-        if (free(*variable, may_move)) motion_[i] = {variable->low, variable->high - variable->low};
+        const bool place = !kMotionVariables[i].spreads;
+        const Variable* variable = place ? &offset : &kMotionVariables[i].in(space);
+        if (free(*variable, all || place)) motion_[i] = {variable->low, variable->high - variable->low};
         const double range = motion_[i].range;
         low_.push_back(0);
         high_.push_back(range > 0 ? 1 : 0);
@@ -53,9 +52,9 @@ Design SearchSpace::design(const std::vector<double>& x) const {
         design.partition = family_.curve(p);
         design.parameters = family_.named(p);
     }
-    double* const numbers[3] = {&design.dosage_factor, &design.land, &design.footprint_offset};
     for (std::size_t i = 0; i < motion_.size(); ++i)
-        if (motion_[i].range > 0) *numbers[i] = motion_[i].low + inside[parameters + i] * motion_[i].range;
+        if (motion_[i].range > 0)
+            kMotionVariables[i].of(design) = motion_[i].low + inside[parameters + i] * motion_[i].range;
     return design;
 }
 

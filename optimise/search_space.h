@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "optimise/motion.h"
 #include "optimise/partition_family.h"
 
 namespace gradwright {
@@ -39,7 +40,7 @@ class SearchSpace {
     struct Motion {
         double low = 0, range = 0;  ///< range 0: fixed
     };
-    std::array<Motion, 3> motion_;  ///< dosage factor, land, footprint offset
+    std::array<Motion, kMotionVariables.size()> motion_;  ///< in their order
     std::vector<double> low_, high_, start_, step_;
 };
 

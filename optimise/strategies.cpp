@@ -7,6 +7,7 @@
 
 #include "optimise/kinematic_evaluator.h"
 #include "optimise/least_squares_strategy.h"
+#include "optimise/motion.h"
 #include "optimise/multi_fidelity_search.h"
 #include "optimise/nlopt_strategy.h"
 #include "optimise/strategy_support.h"
@@ -134,10 +135,9 @@ StudyResult run_mf_strategy(const Study& study, const RunOptions& options) {
         return run.fail(
             fmt::format("The map spread ended '{}': {}", origins.health.status, origins.health.reason));
     }
-    const DesignSpace& free = run.study.design_space;
-    if (free.dosage_factor.free || free.land.free)
-        run.result.warnings.push_back(
-            "mf moves the partition and the footprint only: dosage factor and land stay at their start");
+    if (const std::string names = free_motion(run.study.design_space, true); !names.empty())
+        run.result.warnings.push_back("mf moves the partition and the footprint only: " + names +
+                                      " stay at their start");
     run.record("start", run.map.quick(space.design(space.start())), "start design on the map");
 
     run.enter("search");

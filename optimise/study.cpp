@@ -1,6 +1,8 @@
 // From the question and one point of the design space to the scene of one spread (physics.md 1).
 #include "optimise/study.h"
 
+#include <algorithm>
+
 namespace gradwright {
 
 const char* to_string(Family family) {
@@ -22,13 +24,23 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
         scene.share_a = {1, 0};  // its grains carry no powder
     }
     scene.land = design.land >= 0 ? design.land : study.scene.land;
+    scene.blade_speed = design.blade_speed > 0 ? design.blade_speed : study.scene.blade_speed;
+    if (design.layer_thickness > 0) {
+        scene.layer_thickness = design.layer_thickness;
+        if (study.gap_steady)
+            scene.gap = scene.layer_thickness / study.steady_packing;
+        else if (study.gap_layer)
+            scene.gap = scene.layer_thickness;
+    }
     // Dispenser and platform are equally wide, so the ratio of areas is that of the lengths (physics.md 1.3).
-    scene.dose_height =
+    const double rise =
         design.dosage_factor * scene.layer_thickness * scene.platform_length / scene.dispenser_length;
+    scene.dose_height = std::max(design.dose[0], design.dose[1]) * rise;
     // Fill fraction phi leaves a headspace c = (1 - phi) depth below the rim, levelled away after the first
-    // pass.
+    // pass; a piston that rises less leaves its chamber lower in every pass.
     for (int chamber = 0; chamber < 2; ++chamber)
-        scene.headspace[chamber] = (1 - design.fill_fraction[chamber]) * scene.dispenser_depth;
+        scene.headspace[chamber] = (1 - design.fill_fraction[chamber]) * scene.dispenser_depth +
+                                   (scene.dose_height - design.dose[chamber] * rise);
     scene.seed = seed;
     const double coarsening = strip ? study.map_coarsening : study.full_coarsening;
     return coarsening == 1 ? scene : coarse_grained(scene, coarsening);
@@ -36,7 +48,8 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
 
 double supply_ratio(const Scene& scene, double bed_packing, double layer_packing) {
     const double needed = scene.gap * layer_packing * scene.platform_length;
-    return needed > 0 ? scene.dose_height * bed_packing * scene.dispenser_length / needed : 0;
+    const double dose = scene.dose_height - 0.5 * (scene.headspace[0] + scene.headspace[1]);
+    return needed > 0 ? dose * bed_packing * scene.dispenser_length / needed : 0;
 }
 
 }  // namespace gradwright

@@ -58,9 +58,13 @@ struct DesignSpace {
     double clearance = 0.24e-3;           ///< two_curves: least gap along y [m]
     bool partition_free = true;
     std::array<Variable, 2> fill_fraction = {Variable{"fill_fraction.A", 1}, Variable{"fill_fraction.B", 1}};
-    // motion variables: each new value needs a new spread
+    // motion variables (motion.h): a new value needs a new spread, the footprint's place does not
     Variable dosage_factor{"dosage_factor", 2};
+    /// Rise of each chamber's own piston over the common dose height [-]; {1, 1} = one floor under both.
+    std::array<Variable, 2> dose = {Variable{"dose.A", 1}, Variable{"dose.B", 1}};
     Variable land{"land", 3.2e-3};
+    Variable blade_speed{"blade_speed", -1};           ///< [m/s]; below 0: the process's
+    Variable layer_thickness{"layer_thickness", -1};   ///< [m]; below 0: the process's
     Variable footprint_offset{"footprint_offset", 0};  ///< shift of the footprint in x [m]
 };
 
@@ -107,6 +111,7 @@ struct Study {
     double dispenser_width = 1.6e-3;      ///< W [m]
     double steady_packing = 0.28;         ///< used when gap = steady
     bool gap_steady = true;               ///< gap = layer_thickness / steady_packing
+    bool gap_layer = false;               ///< gap = layer_thickness
     bool allow_starved = false;           ///< supply ratio < 1.05 allowed
     double strip_width = 0.4e-3;          ///< periodic strip of the map [m]
     std::vector<std::string> reductions;  ///< named: see kReductions
@@ -131,15 +136,19 @@ struct Design {
     PartitionCurve partition;
     std::array<double, 2> fill_fraction = {1, 1};
     double dosage_factor = 2;
-    double land = -1;                                        ///< [m]; below 0: the study's
-    double footprint_offset = 0;                             ///< [m]
+    std::array<double, 2> dose = {1, 1};  ///< of each chamber's piston over the dose height
+    double land = -1;                     ///< [m]; below 0: the study's
+    double blade_speed = -1;              ///< [m/s]; below 0: the study's
+    double layer_thickness = -1;          ///< [m]; below 0: the study's
+    double footprint_offset = 0;          ///< [m]
     std::vector<std::pair<std::string, double>> parameters;  ///< named numbers of the family (deg, m)
 };
 
-/// The scene of a design: dose height = dosage_factor x layer x (A_platform/A_dispenser), land, headspaces;
-/// `strip`: the map's narrow periodic strip. Seed is the packing seed.
+/// The scene of a design: dose height = larger dose x dosage_factor x layer x (A_platform/A_dispenser), land,
+/// headspaces, of which the chamber with the smaller dose has the difference; `strip`: the map's narrow
+/// periodic strip. Seed is the packing seed.
 Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64_t seed);
-/// h phi_bed A_dispenser / (g phi_layer A_platform) [-]
+/// h phi_bed A_dispenser / (g phi_layer A_platform), h less the chambers' mean headspace [-]
 double supply_ratio(const Scene& scene, double bed_packing, double layer_packing);
 
 }  // namespace gradwright

@@ -12,6 +12,7 @@
 
 #include "optimise/heap_order.h"
 #include "optimise/joined.h"
+#include "optimise/motion.h"
 #include "optimise/partition_section.h"
 #include "optimise/scene_file.h"
 #include "optimise/target_file.h"
@@ -30,6 +31,27 @@ const std::array<std::string, 11> kSections = {"study",       "machine", "proces
                                                "interaction", "target",  "design_space", "objective",
                                                "numerics",    "run",     "scale_up"};
 
+/// A value of the process that may be freed: its range stands under [design_space], its start is the
+/// process's own where that lies inside.
+Variable read_freed(Section& space, const std::string& key, const std::string& dimension, double own,
+                    const Range& range) {
+    Variable result{key, own};
+    if (!space.has(key)) {
+        space.know(key);
+        return result;
+    }
+    result = space.variable(key, key, dimension, result, "", range);
+    const TomlReader::Found found = space.find(key);
+    if (found.node->is_array() || found.node->is_table()) {
+        if (result.free && found.node->is_array() && own >= result.low && own <= result.high)
+            result.value = own;
+    } else {
+        space.problem(found, key, "can only be freed here: its value stands under [process]",
+                      "write a pair [low, high], or move the value to process." + key);
+    }
+    return result;
+}
+
 // --- design space
 // ---------------------------------------------------------------------------------------------------
 
@@ -44,11 +66,15 @@ void read_design_space(TomlReader& reader, Section& root, Study& study) {
         const std::string label = i == 0 ? "A" : "B";
         design.fill_fraction[i] = fill.variable(label, "fill_fraction." + label, "", design.fill_fraction[i],
                                                 "filled to the rim", Range::above_to(0, 1));
-        if (design.fill_fraction[i].free)
-            fill.problem(fill.find(label), label, "is not searched: it must be one value",
-                         "take the middle of the range, or try several values with `evaluate --set`");
     }
     fill.finish();
+    Section dose = space.sub("dose");
+    for (const int i : {0, 1}) {
+        const std::string label = i == 0 ? "A" : "B";
+        design.dose[i] = dose.variable(label, "dose." + label, "", design.dose[i],
+                                       "one piston under both chambers", Range::above_to(0, 10));
+    }
+    dose.finish();
     Section premix = space.sub("premix");
     const Default pure[2] = {{1, "pure powder"}, {0, "pure powder"}};
     for (const int i : {0, 1})
@@ -84,38 +110,55 @@ void read_design_space(TomlReader& reader, Section& root, Study& study) {
         scene.land = land.value;
     }
     space.know("land");
+    design.blade_speed = read_freed(space, "blade_speed", "speed", scene.blade_speed, Range::above_to(0, 10));
+    design.layer_thickness =
+        read_freed(space, "layer_thickness", "length", scene.layer_thickness, Range::above_to(0, 1e-3));
     design.footprint_offset =
         space.variable("footprint_offset", "footprint_offset", "length", design.footprint_offset,
                        "the part stands where [target] footprint says", Range::between(-10, 10));
     space.finish();
 
     // Rise of the dispenser floor (physics.md 1.3); dispenser and platform are equally wide.
-    const double per_dosage = scene.layer_thickness * scene.platform_length / scene.dispenser_length;
-    scene.dose_height = design.dosage_factor.value * per_dosage;
+    const double lengths = scene.platform_length / scene.dispenser_length;
+    const Design start = [&] {
+        Design result;
+        for (const MotionVariable& motion : kMotionVariables) motion.of(result) = motion.in(design).value;
+        return result;
+    }();
+    Study full_size = study;  // the scene below is the real one; coarse grains are scene_of's own business
+    full_size.full_coarsening = 1;
+    const Scene started = scene_of(full_size, start, false, study.seed);
+    scene.blade_speed = started.blade_speed;
+    scene.layer_thickness = started.layer_thickness;
+    scene.gap = started.gap;
+    scene.dose_height = started.dose_height;
+    scene.headspace = started.headspace;
     const std::vector<std::string> dose_keys = {"design_space.dosage_factor", "process.layer_thickness",
+                                                "design_space.layer_thickness", "design_space.dose",
                                                 "machine"};
     reader.derived("process.dose_height", scene.dose_height, "length",
-                   "dosage_factor x layer_thickness x platform / dispenser area");
+                   "dosage_factor x layer_thickness x platform / dispenser area, times the larger dose");
     const auto lowest = [](const Variable& v) { return v.free ? v.low : v.value; };
     const auto highest = [](const Variable& v) { return v.free ? v.high : v.value; };
-    const double h_low = lowest(design.dosage_factor) * per_dosage,
-                 h_high = highest(design.dosage_factor) * per_dosage;
+    const double h_low = lowest(design.dosage_factor) * lowest(design.layer_thickness) * lengths,
+                 h_high = highest(design.dosage_factor) * highest(design.layer_thickness) * lengths *
+                          std::max(highest(design.dose[0]), highest(design.dose[1]));
     if (reader.sound(dose_keys) && h_high >= scene.dispenser_depth)
         reader.conflict({"design_space.dosage_factor", "machine.dispenser.depth"},
                         fmt::format("one dose would lift the floor by {}, the dispenser is {} deep",
                                     mm(h_high), mm(scene.dispenser_depth)),
                         "lower the dosage factor, or give a deeper dispenser");
     for (const int i : {0, 1}) {
-        scene.headspace[i] = (1 - design.fill_fraction[i].value) * scene.dispenser_depth;
         const std::string key = i == 0 ? "design_space.fill_fraction.A" : "design_space.fill_fraction.B";
         const double deepest = (1 - lowest(design.fill_fraction[i])) * scene.dispenser_depth;
-        if (reader.sound(dose_keys) && reader.sound({key}) && deepest >= h_low)
+        const double rise = h_low * lowest(design.dose[i]);
+        if (reader.sound(dose_keys) && reader.sound({key}) && deepest >= rise)
             reader.conflict(
                 {key},
                 fmt::format("leaves the chamber {} below the rim, more than the floor rises ({}): it starves",
-                            mm(deepest), mm(h_low)),
+                            mm(deepest), mm(rise)),
                 fmt::format("fill it above {:.4g}, or raise the dosage factor",
-                            std::max(0.0, 1 - h_low / scene.dispenser_depth)));
+                            std::max(0.0, 1 - rise / scene.dispenser_depth)));
     }
     if (reader.sound({"target.footprint", "machine.platform", "design_space.footprint_offset"}) &&
         (study.footprint.x_low + lowest(design.footprint_offset) < -kSlack ||
@@ -185,19 +228,23 @@ void read_scale_up(TomlReader& reader, Section& root, Study& study) {
                 reader.conflict({"scale_up.lengths"},
                                 fmt::format("{} is no shorter than the dispenser, {}", mm(strip), mm(length)),
                                 "leave it out; a dispenser that can be spread needs no [scale_up]");
-    for (const Variable* motion :
-         {&study.design_space.dosage_factor, &study.design_space.land, &study.design_space.footprint_offset})
-        if (motion->free)
+    for (const MotionVariable& motion : kMotionVariables)
+        if (motion.in(study.design_space).free)
             reader.conflict(
-                {"design_space." + motion->name},
+                {std::string("design_space.") + motion.name},
                 "must not be free beside [scale_up]: an extrapolated machine is designed at one motion",
                 "give it one value");
     for (const int i : {0, 1})
-        if (study.design_space.fill_fraction[i].free || study.design_space.fill_fraction[i].value != 1)
+        if (study.design_space.fill_fraction[i].value != 1 && !study.design_space.fill_fraction[i].free)
             reader.conflict(
                 {i == 0 ? "design_space.fill_fraction.A" : "design_space.fill_fraction.B"},
                 "must be 1 beside [scale_up]: an extrapolated machine is designed with full chambers",
                 "fill both to 1");
+    for (const int i : {0, 1})
+        if (study.design_space.dose[i].value != 1 && !study.design_space.dose[i].free)
+            reader.conflict({i == 0 ? "design_space.dose.A" : "design_space.dose.B"},
+                            "must be 1 beside [scale_up]: an extrapolated machine has one dispenser floor",
+                            "leave design_space.dose out");
     study.scale_up = {lengths, dosages};
     // what the law is fitted to is not a search that could be cut short
     const auto plan = scale_up_plan(study, own);

@@ -37,7 +37,8 @@ nlohmann::json row_json(const ComparedStrategy& row) {
               {"parameters", parameters},
               {"dosage_factor", number(row.design.dosage_factor)},
               {"land_m", number(row.design.land)},
-              {"footprint_offset_m", number(row.design.footprint_offset)}}}};
+              {"footprint_offset_m", number(row.design.footprint_offset)},
+              {"dose", {row.design.dose[0], row.design.dose[1]}}}}};
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ json profile_json(const Study& study, const StudyResult& result) {
     // unequal fills act in the first layer only: what the layers after it will be
     const ChamberFill fill = chamber_fill(study, result.design);
     json levelled = nullptr;
-    if (!fill.level())
+    if (!fill.lasts())
         levelled = numbers(fill.levelled(proved ? result.confirmed.gi : result.predicted.profile.gi));
     return {{"y_m", numbers(y)},
             {"levelled", levelled},
@@ -253,7 +253,11 @@ json design_json(const Study& study, const Design& design) {
         {"partition", partition},
         {"fill_fraction", {{"A", number(design.fill_fraction[0])}, {"B", number(design.fill_fraction[1])}}},
         {"dosage_factor", number(design.dosage_factor)},
+        {"dose", {{"A", number(design.dose[0])}, {"B", number(design.dose[1])}}},
         {"land_m", number(design.land)},
+        {"blade_speed_m_s", number(design.blade_speed > 0 ? design.blade_speed : study.scene.blade_speed)},
+        {"layer_thickness_m",
+         number(design.layer_thickness > 0 ? design.layer_thickness : study.scene.layer_thickness)},
         {"footprint_offset_m", number(design.footprint_offset)}};
 }
 

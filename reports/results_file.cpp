@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "optimise/motion.h"
 #include "reports/hdf5_file.h"
 #include "reports/map_file.h"
 #include "reports/provenance.h"
@@ -74,11 +75,8 @@ std::vector<double> padded(const std::vector<double>& values, std::size_t size) 
 /// Every number that defines a design, by name.
 std::vector<std::pair<std::string, double>> design_vector(const Design& design) {
     auto vector = design.parameters;
-    vector.emplace_back("fill_fraction.A", design.fill_fraction[0]);
-    vector.emplace_back("fill_fraction.B", design.fill_fraction[1]);
-    vector.emplace_back("dosage_factor", design.dosage_factor);
-    vector.emplace_back("land", design.land);
-    vector.emplace_back("footprint_offset", design.footprint_offset);
+    Design copy = design;
+    for (const MotionVariable& motion : kMotionVariables) vector.emplace_back(motion.name, motion.of(copy));
     return vector;
 }
 
@@ -111,7 +109,8 @@ Axis variable_axis(const StudyResult& result) {
 /// Angles keep degrees because the study file and the workshop do; everything else is SI.
 std::string variable_unit(const std::string& name) {
     if (name.find("angle") != std::string::npos) return "deg";
-    if (name.rfind("fill_fraction", 0) == 0 || name == "dosage_factor") return "1";
+    for (const MotionVariable& motion : kMotionVariables)
+        if (name == motion.name) return motion.unit;
     if (name == "a_below" || name == "b_between") return "1";  // 1 where it is so
     return "m";
 }
@@ -125,10 +124,10 @@ void write_variables(Table& table, H5Writer& file, const Study& study, const Stu
     for (const std::string& name : axis.names) {
         units.push_back(variable_unit(name));
         const Variable* bounds = nullptr;
-        for (const Variable* candidate :
-             {&space.fill_fraction[0], &space.fill_fraction[1], &space.dosage_factor, &space.land,
-              &space.footprint_offset, &space.angle_deg, &space.offset})
+        for (const Variable* candidate : {&space.angle_deg, &space.offset})
             if (candidate->name == name) bounds = candidate;
+        for (const MotionVariable& motion : kMotionVariables)
+            if (motion.name == name) bounds = &motion.in(space);
         low.push_back(bounds && bounds->free ? bounds->low : kUndefined);
         high.push_back(bounds && bounds->free ? bounds->high : kUndefined);
         const bool follows = name == "least_bend_radius_m";  // from the others

@@ -79,6 +79,10 @@ std::string fill_line(const Study& study, const StudyResult& result, int chamber
     if (fraction < 1)
         line +=
             fmt::format(" (level {} mm below the rim)", millimetres((1 - fraction) * scene.dispenser_depth));
+    const Design& design = result.design;
+    if (design.dose[0] != design.dose[1])
+        line += fmt::format(", own piston: {:.4g} times the common rise per layer",
+                            design.dose[static_cast<std::size_t>(chamber)]);
     line += fmt::format(", {:.2f} mm2 in plan", area * 1e6);
     const double packing = result.beds.empty() ? 0 : result.beds.front().packing_fraction;
     if (packing >
@@ -240,6 +244,8 @@ Wording wording(const Study& study, const StudyResult& result) {
         fmt::format("dosage factor {:.3g}: raise the dispenser floor by {} mm; layer {} mm, gap {} mm",
                     result.design.dosage_factor, millimetres(scene.dose_height),
                     millimetres(scene.layer_thickness), millimetres(scene.gap));
+    if (study.design_space.blade_speed.free)
+        words.dose += fmt::format("; blade {:.3g} mm/s", scene.blade_speed * 1e3);
     if (scene.land > 0) words.dose += fmt::format("; land {} mm", millimetres(scene.land));
     const double shift = result.design.footprint_offset;
     words.dose +=
@@ -260,7 +266,7 @@ Wording wording(const Study& study, const StudyResult& result) {
                         "averaged over x hides it",
                         drift));
     const ChamberFill fill = chamber_fill(study, result.design);
-    if (measured && !fill.level()) {
+    if (measured && !fill.lasts()) {
         std::vector<double> residual =
             fill.levelled(proved ? result.confirmed.gi : result.predicted.profile.gi);
         for (std::size_t b = 0; b < residual.size() && b < result.target.size(); ++b)

@@ -172,8 +172,11 @@ TEST(Scene, dose_height_land_and_headspace_follow_the_design) {
     EXPECT_EQ(full.sides, Sides::frictional);
     EXPECT_EQ(strip.width, study.strip_width);
     EXPECT_EQ(strip.sides, Sides::periodic);
-    // h phi_bed L_d / (g phi_layer L_b) = 80 um 0.56 / (143 um 0.28)
-    EXPECT_NEAR(supply_ratio(full, 0.56, 0.28), 80e-6 * 0.56 / (143e-6 * 0.28), 1e-12);
+    // h phi_bed L_d / (g phi_layer L_b) = 55 um 0.56 / (143 um 0.28): A stands 50 um lower, half the powder
+    EXPECT_NEAR(supply_ratio(full, 0.56, 0.28), 55e-6 * 0.56 / (143e-6 * 0.28), 1e-12);
+    design.fill_fraction = {1, 1};
+    EXPECT_NEAR(supply_ratio(scene_of(study, design, false, 42), 0.56, 0.28), 80e-6 * 0.56 / (143e-6 * 0.28),
+                1e-12);
 }
 
 TEST(Judge, bins_at_the_sides_and_outside_the_footprint_do_not_count) {

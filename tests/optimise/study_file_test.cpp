@@ -313,6 +313,24 @@ TEST(study_dose, a_chamber_keeps_its_headspace_while_the_floor_rises_further) {
     EXPECT_EQ(study.scene.headspace[1], 0);
 }
 
+TEST(study_dose, chambers_with_pistons_of_their_own_rise_each_by_its_share) {
+    const Study study = parsed(
+        "[design_space]\ndosage_factor = 3.0\ndose = { A = 1.2, B = [0.5, 1.0] }\n"
+        "blade_speed = [\"50 mm/s\", \"150 mm/s\"]\nlayer_thickness = { range = [\"30 um\", \"60 um\"], "
+        "start = "
+        "\"50 um\" }\n");
+    const DesignSpace& space = study.design_space;
+    EXPECT_EQ(space.dose[0].value, 1.2);
+    EXPECT_TRUE(space.dose[1].free);
+    EXPECT_EQ(space.dose[1].value, 0.75);
+    EXPECT_EQ(space.blade_speed.value, study.scene.blade_speed);  // the process's own lies inside
+    EXPECT_EQ(space.layer_thickness.value, 50e-6);
+    // start of the search and scene are one
+    EXPECT_DOUBLE_EQ(study.scene.dose_height, 1.2 * 3 * 50e-6);
+    EXPECT_NEAR(study.scene.headspace[1], (1.2 - 0.75) * 3 * 50e-6, 1e-15);
+    EXPECT_DOUBLE_EQ(study.scene.gap, 50e-6 / study.steady_packing);
+}
+
 TEST(study_design_space, pairs_free_a_variable_and_start_says_where_to_begin) {
     const Study study = parsed(
         "[design_space]\ndosage_factor = { range = [2.0, 5.0], start = 2.5 }\nland = [\"1 mm\", \"6 mm\"]\n"
