@@ -21,15 +21,15 @@ PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 # A coupon of half the length and half the width of 01: some ten seconds a spread, so that plain methods can have the spreads they
 # need. The sides are a period, as there; bins of 0.1 mm.
 SMALL = ["machine.dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"}", "machine.platform.length=\"1.6 mm\"",
-         "machine.platform.width=\"0.8 mm\"", "machine.land=\"1.6 mm\"", "target.footprint.x=[\"0.8 mm\", \"1.6 mm\"]",
-         "target.bin_width=\"0.1 mm\"", "design_space.partition={family=\"polyline\", knots=3, monotone=true}"]
+         "machine.platform.width=\"0.8 mm\"", "machine.land=\"2.4 mm\"", "target.footprint.x=[\"0.8 mm\", \"1.6 mm\"]",
+         "target.bin_width=\"0.1 mm\"", "design_space.partition={family=\"polyline\", knots=5, monotone=false}"]
 STUDIES = {"linear": ["target.from.y=\"0.2 mm\"", "target.to.y=\"0.6 mm\""],
            "sigmoid": []}
 FILES = {"linear": "examples/01_linear_coupon.toml", "sigmoid": "examples/02_sigmoid_coupon.toml"}
 SIGMOID = ["target.centre=\"0.45 mm\"", "target.width_10_90=\"0.3 mm\"",
            "machine={use=\"coupon-rig\", dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"}, "
-           "platform={length=\"1.6 mm\", width=\"0.8 mm\"}, land=\"1.6 mm\"}"]
-CALL = ["--strategies", "map,bobyqa,cobyla,crs,ceres,mf", "--budget", "12", "--confirmations", "3"]
+           "platform={length=\"1.6 mm\", width=\"0.8 mm\"}, land=\"2.4 mm\"}"]
+CALL = ["--strategies", "map,bobyqa,cobyla,crs,ceres,mf", "--budget", "20", "--confirmations", "3"]
 
 
 def words(name):

@@ -29,7 +29,7 @@ inline constexpr int kReserve = 2;
 /// L_d), h the dose height: the way in heap lengths [-].
 double turnovers_to_part(const Study& study, const Design& design);
 /// Where a straight partition drifts least along x: the order of origins has turned round once and stands
-/// between both. docs/motion-map.md: rms drift 0.08 from 7.5 to 9.6 turnovers, 0.17 and more on both sides,
+/// between both. docs/motion-map.md: rms drift 0.08 from 7.5 to 9.6 turnovers, 0.14 and more on both sides,
 /// over 45 motions of the coupon. Other dispensers and powders have their own: it is where a search looks
 /// second.
 inline constexpr double kBestTurnovers = 8.6;
