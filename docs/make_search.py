@@ -22,7 +22,9 @@ PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 # need. The sides are a period, as there; bins of 0.1 mm.
 SMALL = ["machine.dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"}", "machine.platform.length=\"1.6 mm\"",
          "machine.platform.width=\"0.8 mm\"", "machine.land=\"2.4 mm\"", "target.footprint.x=[\"0.8 mm\", \"1.6 mm\"]",
-         "target.bin_width=\"0.1 mm\"", "design_space.partition={family=\"polyline\", knots=5, monotone=false}"]
+         "target.bin_width=\"0.1 mm\"", "design_space.partition={family=\"polyline\", knots=5, monotone=false}",
+         # a quarter of the grains: twice the noise, and the tolerances that go with it
+         "objective.tolerance=0.08", "objective.x_drift_tolerance=0.2"]
 STUDIES = {"linear": ["target.from.y=\"0.2 mm\"", "target.to.y=\"0.6 mm\""],
            "sigmoid": []}
 FILES = {"linear": "examples/01_linear_coupon.toml", "sigmoid": "examples/02_sigmoid_coupon.toml"}
