@@ -101,8 +101,10 @@ void read_partition_build(TomlReader& reader, Section& root, Study& study) {
     for (const auto& [key, field] : {std::pair{"owner", &build.owner},
                                      {"creator", &build.creator},
                                      {"approved", &build.approved},
-                                     {"date", &build.date}})
-        *field = section.text(key, "", "title block (ISO 7200): left to be filled in by hand");
+                                     {"date", &build.date}}) {
+        *field = section.text(key, "-", "title block (ISO 7200): left to be filled in by hand");
+        if (*field == "-") field->clear();
+    }
     section.finish();
 
     if (reader.sound({at + "make", "design_space.partition"}) && !build.printed && smooth(family))
@@ -122,7 +124,9 @@ void read_partition_build(TomlReader& reader, Section& root, Study& study) {
                         mm(build.slot_clearance), mm(finest)),
             fmt::format("at most {}", mm(0.25 * finest)));
     const double slot = build.thickness + 2 * build.slot_clearance;
-    if (reader.sound({at + "thickness", at + "slot_clearance", at + "least_slot_width"}) &&
+    // a plate that the study spreads needs no workshop: unasked, this is left to the checks of `spec`
+    const bool asked = reader.given(at + "thickness") || reader.given(at + "least_slot_width");
+    if (asked && reader.sound({at + "thickness", at + "slot_clearance", at + "least_slot_width"}) &&
         slot < build.least_slot_width)
         reader.conflict({at + "least_slot_width", at + "thickness"},
                         fmt::format("the slot would be {} wide, the workshop cuts {} at least", mm(slot),

@@ -121,7 +121,14 @@ class Pages {
         double sum = 0;
         for (const double w : widths) sum += w;
         if (sum <= room) {
-            widths.back() += room - sum;
+            // columns to be filled in by hand share what is left, else the last one takes it
+            std::vector<std::size_t> blank;
+            for (std::size_t c = 0; c < widths.size(); ++c)
+                if (std::all_of(block.rows.begin(), block.rows.end(),
+                                [c](const auto& row) { return row[c].empty(); }))
+                    blank.push_back(c);
+            if (blank.empty()) blank.push_back(widths.size() - 1);
+            for (const std::size_t c : blank) widths[c] += (room - sum) / static_cast<double>(blank.size());
             return widths;
         }
         // too wide: the narrow columns keep their width, the wide ones share what is left
@@ -194,7 +201,8 @@ std::vector<SheetBlock> fill_blocks(const Study& study, const HandOver& over) {
                                  "≈ " + mass_text(c.top_up)});
     }
     chambers.note = fmt::format(
-        "Left and right as seen along the plate from its first end P (larger y is left of a plate that runs "
+        "Left and right as seen along the plate from its first end, where its letter stands (larger y is "
+        "left of a plate that runs "
         "in the spreading "
         "direction). Volumes are less the plate of {:g} mm. The tolerance of a mass is {:.3g} % for the bulk "
         "density and what the "

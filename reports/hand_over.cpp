@@ -242,7 +242,9 @@ HandOver hand_over(const Study& study, const FinishedDesign& finished) {
         over.mark += fmt::format("{}CANNOT BE BUILT AS DRAWN: {}", over.mark.empty() ? "" : "; ",
                                  fmt::join(failed, ", "));
     }
-    over.first_line = over.mark.empty() ? "Verified: target met by simulation" : over.mark;
+    over.first_line = !over.mark.empty()    ? over.mark
+                      : over.slot.simulated ? "Verified: target met in simulation with this plate"
+                                            : "Target met in simulation; the plate's slot is not simulated";
     return over;
 }
 

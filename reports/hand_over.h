@@ -59,7 +59,7 @@ struct HandOver {
     std::string id;  ///< "GW-1A2B3C4D": engraved; the same for the same plates in the same machine
     std::string
         mark;  ///< "NOT VERIFIED: verdict undecided"; empty when the target is met and all checks pass
-    std::string first_line;  ///< mark, or "Verified: ..."; opens each file
+    std::string first_line;  ///< mark, or what the simulation says; opens each file
     std::string make;        ///< "straight sheet" | "bent sheet" | "printed wall"
     std::vector<Plate> plates;
     std::vector<FlatPattern> flats;

@@ -103,10 +103,18 @@ class Drawing {
             if (!std::isfinite(letter.at.x)) continue;
             const SheetPoint p = at(letter.at);
             const auto colour = letter.side == 0 ? kA : kB;
-            sheet_.text({p.x, p.y}, letter.side == 0 ? "A" : "B",
-                        {.size = 8, .anchor = Anchor::middle, .bold = true, .colour = colour});
-            sheet_.text({p.x, p.y + 4}, chamber_name(study_, static_cast<int>(letter.side)),
-                        {.size = 2.5, .anchor = Anchor::middle, .colour = colour});
+            // a narrow chamber has room for its letter only
+            const double room =
+                std::abs(finished_.design.partition.signed_distance(letter.at.x, letter.at.y)) * 1e3 *
+                    scale_ -
+                0.5e3 * study_.build.thickness * scale_;
+            const bool narrow = room < 8;
+            sheet_.text(
+                {p.x, p.y + (narrow ? 1.4 : 0)}, letter.side == 0 ? "A" : "B",
+                {.size = narrow ? 4.0 : 8.0, .anchor = Anchor::middle, .bold = true, .colour = colour});
+            if (!narrow)
+                sheet_.text({p.x, p.y + 4}, chamber_name(study_, static_cast<int>(letter.side)),
+                            {.size = 2.5, .anchor = Anchor::middle, .colour = colour});
         }
         end_dimensions(band);
         const double y_arrow = sy(width()) - band - rows(Wall::side_high) - 8, x_middle = sx(length() / 2);
@@ -163,11 +171,11 @@ class Drawing {
                              c = at(plate.corners[k + 2]);
             const double ab = std::hypot(b.x - a.x, b.y - a.y), bc = std::hypot(c.x - b.x, c.y - b.y);
             const double ox = (b.x - a.x) / ab - (c.x - b.x) / bc, oy = (b.y - a.y) / ab - (c.y - b.y) / bc;
-            const double o = std::hypot(ox, oy), off = 2.6 + 0.5e3 * plate.thickness * scale_;
+            const double o = std::hypot(ox, oy), off = 1.9 + 0.5e3 * plate.thickness * scale_;
             if (!(o > 0)) continue;
             sheet_.text({b.x + off * ox / o, b.y + off * oy / o + 0.9},
                         fmt::format("{}{}", plate.name, k + 1),
-                        {.size = 2.6, .anchor = Anchor::middle, .bold = true});
+                        {.size = 2.2, .anchor = Anchor::middle, .bold = true});
         }
     }
 
