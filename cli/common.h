@@ -81,6 +81,8 @@ void add_verify(CLI::App& app, Call& call);
 void add_bulk(CLI::App& app, Call& call);
 void add_limits(CLI::App& app, Call& call);
 void add_report(CLI::App& app, Call& call);
+void add_sensitivity(CLI::App& app, Call& call);
+void add_spec(CLI::App& app, Call& call);
 void add_status(CLI::App& app, Call& call);
 void add_materials(CLI::App& app, Call& call);
 void add_machines(CLI::App& app, Call& call);

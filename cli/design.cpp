@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/run_options.h"
 #include "cli/run_record.h"
+#include "cli/spec.h"
 #include "optimise/journal.h"
 #include "optimise/strategies.h"
 #include "reports/output_folder.h"
@@ -28,6 +29,7 @@ struct DesignOptions {
     std::string strategy = "map";
     std::string fidelity;  ///< empty = map; only the plain strategies have a choice
     int budget = 0;        ///< 0 = the study's, or StrategyChoice's
+    bool no_spec = false;  ///< leave out the hand-over
 };
 
 void refuse_contradictions(const DesignOptions& options) {
@@ -121,6 +123,25 @@ void refuse_other_run(const RunRecord& there, const RunRecord& now, const std::s
                 "'), or begin anew in another folder");
 }
 
+/// The hand-over beside the result. What keeps it from being written is said, and no reason to fail a design.
+void hand_over_to(const std::string& folder, const CommonOptions& common) {
+    try {
+        const SpecOutcome outcome = make_spec(folder, {}, StepSchema::ap214);
+        if (common.quiet) return;
+        fmt::print(stderr, "gradwright: hand-over {} in {}: {}\n", outcome.over.id, outcome.folder,
+                   outcome.over.first_line);
+        if (!outcome.files.step)
+            fmt::print(stderr, "gradwright: without partition.step: {}\n",
+                       outcome.files.step_problem.empty()
+                           ? fmt::format("built without OpenCASCADE ({})", kStepPackage)
+                           : outcome.files.step_problem);
+    } catch (const Failure& failure) {
+        fmt::print(stderr, "gradwright: no hand-over: {}\n  {}\n", failure.message, failure.mend);
+    } catch (const InputError& error) {
+        fmt::print(stderr, "gradwright: no hand-over: {}", report_of(error));
+    }
+}
+
 ExitCode run_design(DesignOptions options, CommonOptions common) {
     const bool resumed = find_resumed(options, common);
     if (options.study.empty() && !resumed)
@@ -198,6 +219,7 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
         fmt::print(stderr, "gradwright: {}\n  {}\n", unwritten->message, unwritten->mend);
         return unwritten->code;
     }
+    if (!options.no_spec) hand_over_to(folder, common);
     const ExitCode code = exit_code_of(result);
     status.end(code == ExitCode::interrupted         ? "interrupted"
                : code == ExitCode::simulation_failed ? "failed"
@@ -234,6 +256,7 @@ void add_design(CLI::App& app, Call& call) {
                      "map, mf: spreads in all, instead of the study's; the others: evaluations, default 60")
         ->type_name("N")
         ->check(CLI::Range(1, 1000000));
+    verb->add_flag("--no-spec", options->no_spec, "Leave out the hand-over (OUT/spec)");
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);
     add_run_options(*verb, call.options);

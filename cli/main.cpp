@@ -101,6 +101,8 @@ int run(int argc, char** argv) {
     add_compare(app, call);
     add_evaluate(app, call);
     add_check(app, call);
+    add_sensitivity(app, call);
+    add_spec(app, call);
     add_report(app, call);
     add_status(app, call);
     add_crosscheck(app, call);

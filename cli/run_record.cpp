@@ -35,7 +35,9 @@ RunRecord record_of(const Study& study, const std::vector<std::string>& set, con
     record.strategy = strategy;
     record.fidelity = fidelity;
     record.budget = budget;
-    for (const InputEntry& entry : study.inputs) record.inputs.emplace_back(entry.key, entry.value);
+    // how the partition is made decides no number of a design
+    for (const InputEntry& entry : study.inputs)
+        if (!entry.key.starts_with("partition_build.")) record.inputs.emplace_back(entry.key, entry.value);
     // A table lies in a file of its own, which may have changed; its weights are zones.
     for (std::size_t k = 0; k < study.target.table_y.size(); ++k)
         record.inputs.emplace_back(fmt::format("target.table[{}]", k),

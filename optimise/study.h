@@ -77,6 +77,23 @@ struct Objective {
     double min_coverage = 0.95;
 };
 
+/// [partition_build]: what the workshop and the operator need beyond the curve itself.
+struct PartitionBuild {
+    bool printed = false;              ///< a printed wall instead of cut and bent sheet
+    double thickness = 0.3e-3;         ///< of sheet or wall [m]
+    double grip = 20e-3;               ///< height above the rim [m]
+    std::string material;              ///< of the plate, as it stands in the title block
+    double bend_radius = 0.3e-3;       ///< inside a bend [m]
+    double k_factor = 0.325;           ///< neutral line from the inside of a bend, in thicknesses [-]
+    double clearance = 12.5e-6;        ///< between the plate's lower edge and the dispenser floor [m]
+    double slot_depth = 1e-3;          ///< how far the plate's ends reach into the dispenser's walls [m]
+    double slot_clearance = 6e-6;      ///< on each side of the plate in its slot [m]
+    double least_slot_width = 0.3e-3;  ///< narrowest slot the workshop can cut [m]
+    std::array<double, 2> bulk_density = {0, 0};  ///< of what fills chamber A, B [kg/m3]; 0 = not measured
+    double density_tolerance = 0.03;              ///< share by which a bulk density repeats [-]
+    std::string owner, creator, approved, date;   ///< title block, as given; empty = to be filled in by hand
+};
+
 /// What may be left out of the physics, by name (numerics.reductions).
 inline constexpr std::array<const char*, 6> kReductions = {
     "fines_cut",      // only sizes from D10 to D90
@@ -126,6 +143,7 @@ struct Study {
     int map_spreads = 1;                ///< strips pooled in the map
     int max_spreads = 4;                ///< budget: map + full
     ScaleUp scale_up;                   ///< [scale_up]
+    PartitionBuild build;               ///< [partition_build]
     std::vector<InputEntry> inputs;     ///< every value, given or default
     std::vector<std::string> warnings;  ///< found while reading
 };

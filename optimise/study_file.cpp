@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "optimise/build_section.h"
 #include "optimise/heap_order.h"
 #include "optimise/joined.h"
 #include "optimise/motion.h"
@@ -27,9 +28,9 @@ std::string mm(double si) {
     return format_quantity(si, "length");
 }
 
-const std::array<std::string, 11> kSections = {"study",       "machine", "process",      "powder",
+const std::array<std::string, 12> kSections = {"study",       "machine", "process",      "powder",
                                                "interaction", "target",  "design_space", "objective",
-                                               "numerics",    "run",     "scale_up"};
+                                               "numerics",    "run",     "scale_up",     "partition_build"};
 
 /// A value of the process that may be freed: its range stands under [design_space], its start is the
 /// process's own where that lies inside.
@@ -312,6 +313,7 @@ Study parse_study(const std::string& text, const std::string& file_name,
     read_objective(root, study);
     read_run(reader, root, study);
     read_scale_up(reader, root, study);
+    read_partition_build(reader, root, study);
     root.finish();
     if (!reader.problems().empty()) {
         std::stable_sort(reader.problems().begin(), reader.problems().end(),

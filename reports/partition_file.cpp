@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "reports/json_support.h"
+#include "reports/plate.h"
 #include "reports/result_json.h"
 #include "reports/wording.h"
 
@@ -15,25 +16,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Wall on which an end of the partition lies and the way along that wall from the datum corner.
-json end_offset(const PartitionRow& row, double length_mm, double width_mm) {
-    const double tolerance = 1e-6;  // [mm]
-    const char* wall = "none";
-    double offset = std::nan("");
-    if (std::abs(row.x_mm) < tolerance) {
-        wall = "rear (x = 0)";
-        offset = row.y_mm;
-    } else if (std::abs(row.x_mm - length_mm) < tolerance) {
-        wall = "platform side (x = length)";
-        offset = row.y_mm;
-    } else if (std::abs(row.y_mm) < tolerance) {
-        wall = "side y = 0";
-        offset = row.x_mm;
-    } else if (std::abs(row.y_mm - width_mm) < tolerance) {
-        wall = "side y = width";
-        offset = row.x_mm;
-    }
-    return {{"wall", wall}, {"offset_m", number(offset * 1e-3)}, {"offset_mm", number(offset)}};
+/// Wall on which an end of the partition lies and the way along that wall from the datum corner. `before`:
+/// the corner before the end.
+json end_offset(const PartitionRow& row, const PartitionRow& before, double length_mm, double width_mm) {
+    const WallEnd end =
+        wall_end({row.x_mm, row.y_mm}, {row.x_mm - before.x_mm, row.y_mm - before.y_mm}, length_mm, width_mm);
+    return {{"wall", end.name()}, {"offset_m", number(end.offset * 1e-3)}, {"offset_mm", number(end.offset)}};
 }
 
 json powder_json(const Powder& powder) {
@@ -65,15 +53,14 @@ json partition_json(const Study& study, const StudyResult& result) {
     const bool pair = !result.design.partition.second.empty();
     const char* const curves =
         pair ? "of each directed curve, P1, P2, ... and Q1, Q2, ..." : "of the directed curve P1, P2, ...";
-    const auto end = [&](std::size_t curve, bool first) {
-        const auto on = [curve](const PartitionRow& row) { return row.curve == int(curve) + 1; };
-        if (first) return *std::find_if(rows.begin(), rows.end(), on);
-        return *std::find_if(rows.rbegin(), rows.rend(), on);
-    };
     const auto ends = [&](std::size_t curve) {
         if (points_m[curve].size() < 2) return json(nullptr);
-        return json({{"first", end_offset(end(curve, true), length * 1e3, width * 1e3)},
-                     {"last", end_offset(end(curve, false), length * 1e3, width * 1e3)}});
+        std::vector<PartitionRow> own;
+        for (const PartitionRow& row : rows)
+            if (row.curve == int(curve) + 1) own.push_back(row);
+        const double length_mm = length * 1e3, width_mm = width * 1e3;
+        return json({{"first", end_offset(own[0], own[1], length_mm, width_mm)},
+                     {"last", end_offset(own.back(), own[own.size() - 2], length_mm, width_mm)}});
     };
     const bool inside = rows.size() >= 2;
     const double area_a = inside ? result.design.partition.area_a(length, width) : std::nan("");

@@ -109,6 +109,13 @@ std::vector<std::string> bad_studies() {
 INSTANTIATE_TEST_SUITE_P(table, BadStudy, testing::ValuesIn(bad_studies()),
                          [](const auto& info) { return info.param; });
 
+TEST(study_file, a_plate_that_is_only_spread_needs_no_workshop) {
+    const Study study = read_study((kSource / "examples" / "01_linear_coupon.toml").string(),
+                                   {"process.plate_thickness=\"0.2 mm\""});
+    EXPECT_EQ(study.build.thickness, 0.2e-3);  // thinner than any slot that the default workshop cuts
+    EXPECT_LT(study.build.thickness + 2 * study.build.slot_clearance, study.build.least_slot_width);
+}
+
 TEST(study_file, that_cannot_be_read_says_so) {
     try {
         read_study("no/such/study.toml");

@@ -1,0 +1,47 @@
+#include "tests/reports/step_reader.h"
+
+#include <BRepBndLib.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepBasic_Product.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Shape.hxx>
+#include <XSControl_WorkSession.hxx>
+
+namespace gradwright {
+
+std::vector<ReadSolid> read_step(const std::string& path) {
+    std::vector<ReadSolid> solids;
+    STEPControl_Reader reader;
+    if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) return solids;
+    reader.TransferRoots();
+    for (TopExp_Explorer at(reader.OneShape(), TopAbs_SOLID); at.More(); at.Next()) {
+        ReadSolid solid;
+        solid.valid = BRepCheck_Analyzer(at.Current()).IsValid();
+        GProp_GProps properties;
+        BRepGProp::VolumeProperties(at.Current(), properties);
+        solid.volume = properties.Mass();
+        for (TopExp_Explorer face(at.Current(), TopAbs_FACE); face.More(); face.Next()) ++solid.faces;
+        Bnd_Box box;
+        BRepBndLib::AddOptimal(at.Current(), box, false, false);
+        box.SetGap(0);
+        box.Get(solid.box[0], solid.box[1], solid.box[2], solid.box[3], solid.box[4], solid.box[5]);
+        solids.push_back(solid);
+    }
+    const Handle(Interface_InterfaceModel) model = reader.WS()->Model();
+    std::size_t next = 0;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const Handle(StepBasic_Product) product = Handle(StepBasic_Product)::DownCast(model->Value(i));
+        if (product.IsNull() || next >= solids.size()) continue;
+        solids[next].name = product->Name()->ToCString();
+        solids[next++].description = product->Description()->ToCString();
+    }
+    return solids;
+}
+
+}  // namespace gradwright

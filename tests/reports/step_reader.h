@@ -1,0 +1,18 @@
+// A STEP file read back by OpenCASCADE, apart from what wrote it.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+namespace gradwright {
+
+struct ReadSolid {
+    std::string name, description;  ///< of its product
+    bool valid = false;
+    double volume = 0;  ///< [mm3]
+    int faces = 0;
+    std::array<double, 6> box{};  ///< least x y z, largest x y z [mm]
+};
+std::vector<ReadSolid> read_step(const std::string& path);
+
+}  // namespace gradwright
