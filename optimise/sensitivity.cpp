@@ -211,8 +211,8 @@ class SensitivityRun {
         out_.budget = tolerance_budget(study_, out_.design, profile, options_.tolerance_class,
                                        options_.gi_error, out_.noise_floor);
         tell("plates on the map", 0);
-        out_.band =
-            check_band(study_, out_.design, profile, out_.budget, options_.band_plates, study_.seed + 2);
+        out_.band = check_band(study_, out_.design, profile, out_.budget, options_.band_plates,
+                               study_.seed + 1000000);
     }
 
     /// Strips of the motion inputs: one packing seed for all, so that what differs is the input and not the

@@ -12,7 +12,7 @@
 namespace gradwright {
 namespace {
 
-constexpr int kDraws = 20000;
+constexpr int kDraws = 2000;
 
 double rms_over(const std::vector<double>& values, const std::vector<double>& weight) {
     double sum = 0;
@@ -145,16 +145,14 @@ ToleranceBudget tolerance_budget(const Study& study, const Design& design, const
         d.needed = d.slope_rms > 0 ? out.promised / (std::sqrt(n) * d.slope_rms)
                                    : std::numeric_limits<double>::infinity();
     }
-    Random random(study.seed);
-    std::vector<std::vector<double>> size(bins, std::vector<double>(kDraws));
-    std::vector<double> u(out.dimensions.size());
+    const std::vector<double> ideal = profile(design);
+    std::vector<std::vector<double>> size(bins);
     for (int k = 0; k < kDraws; ++k) {
-        for (double& value : u) value = 2 * random.uniform() - 1;
+        const std::vector<double> gi =
+            profile(drawn_plate(dimensions, design, study.seed + std::uint64_t(k)));
         for (std::size_t b = 0; b < bins; ++b) {
-            double sum = 0;
-            for (std::size_t i = 0; i < u.size(); ++i)
-                sum += out.dimensions[i].slope[b] * out.dimensions[i].tolerance * u[i];
-            size[b][std::size_t(k)] = std::fabs(sum);
+            const double error = std::fabs(gi[b] - ideal[b]);
+            size[b].push_back(std::isfinite(error) ? error : 0);
         }
     }
     for (std::size_t b = 0; b < bins; ++b) {
