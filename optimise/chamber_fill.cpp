@@ -40,13 +40,39 @@ void ChamberFill::apply(GradationMap& map) const {
     for (double& cell : map.gi) cell = gi(cell);
 }
 
-ChamberFill chamber_fill(const Study& study, const std::array<double, 2>& fill_fraction, double dose_height) {
+ChamberFill ChamberFill::of_layer(int number, int layers, double dose_height) const {
+    ChamberFill fill = *this;
+    if (level() || number == 1) return fill;
+    if (number > 1)
+        fill.dose = {1, 1};
+    else
+        for (double& dose : fill.dose) dose += (layers - 1) * dose_height;
+    return fill;
+}
+
+namespace {
+
+ChamberFill of_first_layer(const Study& study, const std::array<double, 2>& fill_fraction,
+                           double dose_height) {
     ChamberFill fill;
     fill.share_a = study.scene.share_a;
     for (int chamber = 0; chamber < 2; ++chamber)
         fill.dose[chamber] = dose_height - (1 - fill_fraction[chamber]) * study.scene.dispenser_depth;
     if (fill_fraction[0] == fill_fraction[1]) fill.dose = {1, 1};
     return fill;
+}
+
+}  // namespace
+
+ChamberFill chamber_fill(const Study& study, const std::array<double, 2>& fill_fraction, double dose_height) {
+    return of_first_layer(study, fill_fraction, dose_height)
+        .of_layer(judged_number(study), study.scene.layers, dose_height);
+}
+
+ChamberFill chamber_fill_of_layer(const Study& study, const Design& design, int number) {
+    const double dose_height = scene_of(study, design, false, 0).dose_height;
+    return of_first_layer(study, design.fill_fraction, dose_height)
+        .of_layer(number, study.scene.layers, dose_height);
 }
 
 ChamberFill chamber_fill(const Study& study, const Design& design) {

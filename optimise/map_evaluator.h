@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "dem/homogeneous_estimator.h"
 #include "optimise/heap_order.h"
 #include "optimise/journal.h"
 #include "optimise/spread_runner.h"
@@ -17,6 +18,7 @@ namespace gradwright {
 struct OriginMap {
     RunHealth health;  ///< of the first spread that failed, else ok
     std::vector<Layer> layers;
+    std::vector<SpreadResult> spreads;  ///< without pictures; of several layers only: what each of them is
     std::vector<BedFacts> beds;
     Scene scene;  ///< of the first strip
     std::uint64_t seed = 0;
@@ -61,6 +63,9 @@ class MapEvaluator : public Evaluator {
     Key key_of(const Design& design, std::uint64_t seed) const;
     Evaluation with(const Design& design, OriginMap& map, bool quoted);
 
+    /// Every layer of a run of several.
+    std::vector<LaidLayer> read_layers(const Design& design, const OriginMap& map,
+                                       const HomogeneousOptions& options) const;
     static void describe_turnover(const OriginMap& map, Evaluation& evaluation);
 
     const Study& study_;

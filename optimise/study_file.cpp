@@ -224,6 +224,23 @@ std::size_t section_index(const std::string& key) {
                                     kSections.begin());
 }
 
+void warn_of_layers(Study& study) {
+    const auto& fill = study.design_space.fill_fraction;
+    const bool fills = fill[0].free || fill[1].free || fill[0].value != fill[1].value;
+    if (study.scene.layers > 1 && fills && judged_number(study) != 1)
+        study.warnings.push_back(fmt::format(
+            "unequal fill fractions act in the first layer only, and target.layer judges {}: the blade has "
+            "levelled the chambers by then",
+            judged_number(study) == 0 ? "all layers together"
+                                      : fmt::format("layer {}", judged_number(study))));
+    if (study.scene.layers > 1 && study.scene.substrate == Substrate::fused &&
+        (study.footprint.x_low > 0 || study.footprint.x_high < study.scene.platform_length))
+        study.warnings.push_back(
+            "every layer is melted over the whole platform, the part's footprint is smaller: in the machine "
+            "the "
+            "powder beside the part stays");
+}
+
 }  // namespace
 
 std::string InputProblem::text() const {
@@ -274,6 +291,7 @@ Study parse_study(const std::string& text, const std::string& file_name,
         throw InputError{reader.problems()};
     }
     warn_of_estimates(reader, study);
+    warn_of_layers(study);
     study.inputs = std::move(reader.inputs());
     std::stable_sort(study.inputs.begin(), study.inputs.end(), [](const InputEntry& a, const InputEntry& b) {
         return section_index(a.key) < section_index(b.key);
