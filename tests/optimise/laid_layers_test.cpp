@@ -149,7 +149,7 @@ TEST(JudgedLayer, is_what_the_map_is_made_of) {
         EXPECT_EQ(e.profile.gi, e.layers.at(judged == 1 ? 0 : 1).profile.gi);
         EXPECT_NEAR(e.capture_fraction, judged == 1 ? 0.6 : 0.5, 1e-12);
         EXPECT_TRUE(maps.quick(design).layers.empty());
-        EXPECT_EQ(maps.quick(design).misfit.value, e.misfit.value);
+        EXPECT_NEAR(maps.quick(design).misfit.value, e.misfit.value, 1e-12);  // summed in another order
         gi.push_back(e.profile.gi);
     }
     EXPECT_NE(gi[0], gi[1]);
