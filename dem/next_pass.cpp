@@ -1,5 +1,7 @@
 #include "dem/next_pass.h"
 
+#include <algorithm>
+
 #include "dem/bulk.h"
 #include "dem/substrate.h"
 
@@ -30,7 +32,10 @@ Pass next_pass(const Scene& scene, const Stage& stage, const Pass& before, Engin
     State& s = engine.state();
     const std::vector<GrainSpec> fresh = melts ? fused_surface(scene, pass.number) : std::vector<GrainSpec>{};
     for (std::size_t i = 0; i < s.size(); ++i) {
-        if (s.x[i] < platform)
+        // what lies on a land's edge would sink into the land: it goes up too, and falls back
+        const bool on_edge = !melts && !s.fixed[i] && s.x[i] >= platform &&
+                             std::min(s.x[i] - platform, end - s.x[i]) < 0.95 * s.radius[i];
+        if (s.x[i] < platform || on_edge)
             s.z[i] += scene.dose_height;
         else if (melts)
             s.z[i] = fresh.at(static_cast<std::size_t>(s.id[i]) - stage.platform_floor).z;
