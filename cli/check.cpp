@@ -13,6 +13,7 @@
 #include "optimise/heap_order.h"
 #include "optimise/motion.h"
 #include "reports/json_support.h"
+#include "reports/layers_json.h"
 #include "reports/result_json.h"
 
 namespace gradwright::cli {
@@ -92,6 +93,9 @@ nlohmann::json check_json(const Study& study, const StudyEstimate& estimate, int
          {{"grain_steps_per_second_per_core", kAssumedSpeed}, {"bed_packing", kAssumedBedPacking}}},
         {"threads", threads},
         {"gap_m", number(estimate.gap)},
+        {"layers", study.scene.layers},
+        {"judged_layer", judged_layer_json(study)},
+        {"packed_depth_m", number(estimate.packed_depth)},
         {"dose_height_m", number(estimate.dose_height)},
         {"supply_ratio", number(estimate.supply_ratio)},
         {"seconds_at_most", number(estimate.seconds_at_most)},
@@ -134,6 +138,11 @@ void print_check(const Study& study, const StudyEstimate& estimate, int threads)
         1e6 * estimate.gap,
         study.gap_steady ? fmt::format("steady, assumed layer packing {}", study.steady_packing) : "as given",
         1e6 * estimate.dose_height, estimate.supply_ratio, kAssumedBedPacking);
+    if (study.scene.layers > 1)
+        fmt::print(
+            "Layers      {}, judged {}; the bed is packed {:.0f} um deep below the rim, a dose for each\n",
+            study.scene.layers, judged_number(study) == 0 ? "all" : fmt::format("{}", judged_number(study)),
+            1e6 * estimate.packed_depth);
     fmt::print(
         "\nEstimated cost on {} thread{}, at {:.0f} million grain-steps/s and core ('gradwright bench' "
         "measures "
@@ -223,6 +232,7 @@ StudyEstimate estimate(const Study& study, int threads) {
     }
     const Scene own = scene_of(study, design, true, study.seed);
     result.dose_height = own.dose_height;
+    result.packed_depth = own.floor_depth();
     result.supply_ratio = supply_ratio(own, kAssumedBedPacking, study.steady_packing);
     const DesignSpace& space = study.design_space;
     result.partition_variables = free_count(space);

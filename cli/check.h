@@ -31,6 +31,7 @@ struct StudyEstimate {
     double seconds_at_most = 0;       ///< every spread of the budget [s]
     double memory_bytes = 0;          ///< of the largest spread
     double dose_height = 0, gap = 0;  ///< [m]
+    double packed_depth = 0;          ///< of the bed below the rim in the first pass [m]
     int partition_variables = 0, motion_variables = 0;
 };
 

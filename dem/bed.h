@@ -11,8 +11,8 @@
 
 namespace gradwright {
 
-/// Grains of a settled, not yet levelled bed. Floor's mean plane at z = -bed_depth, so z = 0 is already the
-/// blade's plane.
+/// Grains of a settled, not yet levelled bed. Floor's mean plane at z = -floor_depth(), so z = 0 is already
+/// the blade's plane.
 struct Bed {
     std::vector<double> x, y, z, radius;  ///< [m]
     std::vector<std::uint8_t> material;   ///< 0 = A, 1 = B

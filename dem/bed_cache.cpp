@@ -15,6 +15,9 @@ std::string bed_key(const Scene& scene, const PartitionCurve* partition) {
     s.blade_speed = s.blade_tip_radius = s.blade_thickness = 0;
     s.headspace = {0, 0};
     s.substrate = Substrate::fused;
+    // of `layers` only the deeper floor
+    s.bed_depth = scene.floor_depth();
+    s.layers = 1;
     s.sleep = false;
     s.allow_starved = false;
     s.adhesive_walls = true;  // of the machine while it spreads; the dispenser's walls are not concerned

@@ -137,6 +137,9 @@ BenchResult run_bench(const BenchOptions& options) {
     for (const double wanted : options.grains) {
         Scene scene = options.scene;
         scene.sides = Sides::periodic;
+        // one pass is timed, over nothing that moves
+        scene.layers = 1;
+        if (scene.substrate == Substrate::powder) scene.substrate = Substrate::fused;
         // the default study's cross-section, longer or wider until the number of grains fits
         const double per_area = estimate_cost(scene).grains / (scene.dispenser_length * scene.width);
         const double area = wanted * 1.08 / per_area;

@@ -79,6 +79,14 @@ std::vector<SceneProblem> validate(const Scene& s) {
     else if (!(s.gap > 0))
         fatal(
             fmt::format("gap {:.0f} um: the blade would run into the plate: raise process.gap", s.gap * um));
+    if (s.layers < 1) fatal("a spread lays one layer or more: process.layers >= 1");
+    if (s.layers > 1 && s.floor_depth() > s.dispenser_depth * (1 + 1e-9))
+        fatal(fmt::format(
+            "{} doses of {:.0f} um above {:.0f} um of bed need a well of {:.2f} mm, it is {:.2f} mm "
+            "deep: lower process.layers, the dosage factor or numerics.bed_depth",
+            s.layers, s.dose_height * um, s.bed_depth * um, 1e3 * s.floor_depth(), 1e3 * s.dispenser_depth));
+    if (!(s.substrate_share_a >= 0 && s.substrate_share_a <= 1))
+        fatal("the powder under the layer holds a share of A between 0 and 1: process.substrate_share_a");
     if (s.bed_depth < tops)
         fatal(fmt::format(
             "only {:.0f} um of powder are modelled below the blade, the rough floor's tops stand {:.0f} um "
@@ -116,13 +124,15 @@ SceneCost estimate_cost(const Scene& s) {
     const double mean_volume =
         0.5 * (s.powder[0].size.mean_grain_volume() + s.powder[1].size.mean_grain_volume());
     const double area = s.dispenser_length * s.width;
-    c.grains = kBedPacking * area * (s.bed_depth + s.dose_height) / mean_volume;
-    const double rough_area = area + (s.substrate == Substrate::fused ? s.platform_length * s.width : 0);
+    const double platform_area = s.platform_length * s.width;
+    c.grains = kBedPacking *
+               (area * (s.floor_depth() + s.dose_height) + platform_area * s.substrate_depth()) / mean_volume;
+    const double rough_area = area + (s.substrate == Substrate::plate ? 0 : platform_area);
     c.fixed_grains = rough_area / (0.95 * 0.95 * std::sqrt(3.0) / 2 * s.roughness * s.roughness);
     const double dt = scene_time_step(s);
     const double way = s.dispenser_length + s.land + s.platform_length + 0.5 * s.second_land;
-    const double pack = 1.6 * std::sqrt(2.4 * (s.bed_depth + s.dose_height) / s.gravity);
-    c.steps = (way / s.blade_speed + pack) / dt;
+    const double pack = 1.6 * std::sqrt(2.4 * (s.floor_depth() + s.dose_height) / s.gravity);
+    c.steps = (s.layers * way / s.blade_speed + pack) / dt;
     c.grain_steps = c.grains * c.steps;
     c.memory_bytes = (c.grains + c.fixed_grains) * 1000;
     return c;

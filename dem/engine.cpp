@@ -103,6 +103,15 @@ void Engine::remove_body(int body) {
     lists_valid_ = false;
 }
 
+void Engine::move_body(int body, const Body& to, bool carried) {
+    if (to.kind != bodies_.at(body).kind)
+        throw std::invalid_argument("Engine::move_body: a body stays of its kind");
+    bodies_[body] = to;
+    if (!carried) kernel_->forget_body(body);
+    wake_all();
+    lists_valid_ = false;
+}
+
 void Engine::set_material(std::size_t i, int material) {
     auto& s = state_;
     s.mass[i] *= options_.materials.at(material).density / options_.materials[s.material[i]].density;

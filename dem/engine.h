@@ -81,6 +81,9 @@ class Engine {
     int add_grain(const GrainSpec& grain);
     int add_body(const Body& body);
     void remove_body(int body);  ///< its contacts end; other bodies keep their numbers
+    /// The body stands elsewhere from here on; same kind. `carried`: with all that touches it, which keeps
+    /// its springs; else its contacts end. A run restored from later on needs the body as it stands then.
+    void move_body(int body, const Body& to, bool carried);
     /// Remove mobile grains by id (levelling, overflow).
     void remove_grains(const std::function<bool(std::size_t index)>& predicate);
     /// Give grain index i another material: its mass and its contacts' constants change, its springs stay.

@@ -1,6 +1,7 @@
 // What one spread leaves: every laid grain with where it lies, where it came from, and what it carried.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct Layer {
     /// Solid volume below z = 0 over gap x area [-]
     double packing_fraction() const;
 };
+
+/// Several layers of one run as one: all their grains, sums of doses and overflows; `gap` is the sum of
+/// theirs, so that packing_fraction() is the share of all their room. Not empty.
+Layer pooled(std::span<const Layer> layers);
 
 /// Positions and velocities of every mobile grain at one instant, for pictures, VTK and the heap's measures
 /// (heap.h).

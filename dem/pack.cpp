@@ -291,11 +291,11 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     Random random(scene.seed * 0x9e3779b97f4a7c15ull + 17);
     const double area = scene.dispenser_length * scene.width;
     const double d50 = std::max(scene.powder[0].size.d50, scene.powder[1].size.d50);
-    const double wanted_height = scene.bed_depth + scene.dose_height;
+    const double wanted_height = scene.floor_depth() + scene.dose_height;
     // Adhesive frictional beds of these powders settle at 0.50-0.60; pour for 0.60 plus one and a half
     // grains, the rest is levelled off.
     const double solid = 0.60 * area * (wanted_height + 1.5 * d50);
-    const double z_floor = -scene.bed_depth;
+    const double z_floor = -scene.floor_depth();
 
     // Rolling while packing is always the elastic-plastic spring: constant_torque and edem have no rest
     // (grains creep down at up to 4e-4 m/s below its regularisation, twice what "settled" allows). The spread

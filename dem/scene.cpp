@@ -24,7 +24,7 @@ Scene coarse_grained(Scene scene, double factor) {
     for (double* height : {&scene.bed_depth, &scene.dose_height, &scene.headspace[0], &scene.headspace[1],
                            &scene.gap, &scene.layer_thickness, &scene.roughness, &scene.blade_tip_radius})
         *height *= factor;
-    scene.dispenser_depth = std::max(scene.dispenser_depth, scene.bed_depth);
+    scene.dispenser_depth = std::max(scene.dispenser_depth, scene.floor_depth());
     scene.blade_tip_radius = std::min(scene.blade_tip_radius, scene.blade_thickness);
     scene.interaction.work_of_adhesion *= factor;
     return scene;
@@ -75,6 +75,8 @@ std::string Scene::canonical_text() const {
     if (share_a[0] != 1 || share_a[1] != 0)
         out += fmt::format("share_a = {:.17g} {:.17g}\n", share_a[0], share_a[1]);
     if (!adhesive_walls) number("adhesive_walls", 0);
+    if (substrate == Substrate::powder) number("substrate_share_a", substrate_share_a);
+    if (layers != 1) number("layers", layers);
     number("softening", softening);
     number("adhesion_scaling", static_cast<int>(adhesion_scaling));
     number("rayleigh_fraction", rayleigh_fraction);

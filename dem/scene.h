@@ -13,7 +13,8 @@
 
 namespace gradwright {
 
-enum class Substrate { fused, plate };
+/// What the first layer is laid on. Later layers lie on fused metal again, else on the powder before them.
+enum class Substrate { fused, plate, powder };
 enum class Sides { periodic, frictional, frictionless };
 enum class Precision {
     single_law,
@@ -44,6 +45,9 @@ struct Scene {
     double gap = 143e-6;             ///< substrate mean plane to blade edge [m]
     double layer_thickness = 40e-6;  ///< [m]
     Substrate substrate = Substrate::fused;
+    /// Substrate::powder: share of powder A, by solid volume, in the settled powder under the first layer.
+    double substrate_share_a = 1;
+    int layers = 1;            ///< doses and passes, one after the other (next_pass.h), >= 1
     double roughness = 40e-6;  ///< diameter of the fixed grains of a fused substrate and of the bed floor [m]
     Sides sides = Sides::periodic;
     /// Share of powder A, by solid volume, in what is filled into chamber A and B: {1, 0} = pure powders.
@@ -65,6 +69,15 @@ struct Scene {
     bool early_stop = false;  ///< the blade stops at the platform's end instead of carrying the heap off it
     Precision precision = Precision::single_law;
     std::uint64_t seed = 1;
+
+    /// Depth of the dispenser's floor below z = 0 in the first pass [m]: in the last one, after layers - 1
+    /// further doses, it is bed_depth.
+    double floor_depth() const { return bed_depth + (layers - 1) * dose_height; }
+    /// Powder under a layer on Substrate::powder, as deep as the dispenser's [m]; 0 without it.
+    double substrate_depth() const { return substrate == Substrate::powder ? bed_depth : 0; }
+    /// How far the platform sinks between two passes [m]. Fused metal shrinks by what the platform sinks, so
+    /// that its surface stays where it is.
+    double sink() const { return substrate == Substrate::fused ? 0 : layer_thickness; }
 
     /// Every field as "key = value" lines with full precision: what the caches hash.
     std::string canonical_text() const;

@@ -13,14 +13,14 @@
 namespace gradwright {
 
 struct Progress {
-    std::string stage;    ///< "pack", "settle", "spread"
+    std::string stage;    ///< "pack", "settle", "spread", "spread layer 2 of 3"
     double fraction = 0;  ///< 0..1 of that stage
 };
 
 struct SpreadOptions {
     int threads = 0;           ///< 0 = OpenMP's default
     std::string cache_folder;  ///< settled beds; empty = no cache
-    int snapshots = 0;         ///< instants kept between first and last; 0 = none but first and last
+    int snapshots = 0;  ///< instants of the last pass kept between first and last; 0 = none but those two
     std::function<void(const Progress&)> progress;
     bool energy_account = false;              ///< fill SpreadResult::energy: no sleep, several times slower
     const std::atomic<bool>* stop = nullptr;  ///< set by a signal: the run ends with status "interrupted"
@@ -36,12 +36,20 @@ struct BedFacts {
     std::vector<double> made_d10_d50_d90;  ///< [m]
 };
 
+/// What only passes over powder, or several of them, have to tell.
+struct PassFacts {
+    double raised_solid_volume = 0;       ///< above z = 0 ahead of the platform when the pass began [m3]
+    double carried_off_solid_volume = 0;  ///< of substrate and earlier layers, taken over the end [m3]
+};
+
 struct SpreadResult {
     RunHealth health;
-    Layer layer;
+    Layer layer;                    ///< the last one laid
+    std::vector<Layer> earlier;     ///< those laid before it, the first first; empty with one layer
+    std::vector<PassFacts> passes;  ///< one a layer; empty for one layer on fused metal or a plate
     BedFacts bed;
     std::vector<Snapshot> snapshots;  ///< first = levelled and raised bed, last = the end
-    long grains = 0;                  ///< mobile grains in the spread
+    long grains = 0;                  ///< mobile grains in the spread, a powder substrate's too
     long fixed_grains = 0;
     long pinched_grains = 0;  ///< pressed into the yielding blade by more than 5 % of their radius, mostly at
                               ///< the dispenser's rim
@@ -51,7 +59,7 @@ struct SpreadResult {
     double time_step = 0;                  ///< [s]
     double bond_number = 0;                ///< F_po/(m g) of the median grain, as computed
     double seconds = 0, seconds_cold = 0;  ///< wall; cold adds the stored cost of what came from a cache
-    std::string state_hash;                ///< of positions and velocities at the end
+    std::string state_hash;                ///< of positions and velocities at the end, of every pass
     EnergyLedger energy;                   ///< of the spread, from the blade's start; with `energy_account`
 };
 

@@ -22,6 +22,10 @@ struct Put {
     void one(const bool& value) { one(static_cast<std::uint8_t>(value)); }
     void text(const std::string& text) { put(bytes, std::vector<char>(text.begin(), text.end())); }
     template <class T>
+    bool more(const std::vector<T>& list) const {
+        return !list.empty();
+    }
+    template <class T>
     void count(const std::vector<T>& list) {
         one(static_cast<std::uint64_t>(list.size()));
     }
@@ -52,6 +56,10 @@ struct Take {
         text.assign(letters.begin(), letters.end());
     }
     template <class T>
+    bool more(const std::vector<T>&) const {
+        return at < bytes.size();
+    }
+    template <class T>
     void count(std::vector<T>& list) {
         std::uint64_t size = 0;
         one(size);
@@ -61,14 +69,7 @@ struct Take {
     }
 };
 
-const auto members = [](auto& io, auto& r) {
-    auto& h = r.health;
-    io.text(h.status);
-    io.text(h.reason);
-    io.one(h.max_overlap_ratio);
-    io.count(h.warnings);
-    for (auto& warning : h.warnings) io.text(warning);
-    auto& l = r.layer;
+const auto layer_members = [](auto& io, auto& l) {
     for (auto* v : {&l.origin_x, &l.origin_y, &l.origin_z, &l.deposit_x, &l.deposit_y, &l.deposit_z,
                     &l.volume, &l.radius})
         io.all(*v);
@@ -79,6 +80,16 @@ const auto members = [](auto& io, auto& r) {
                     &l.overflow_solid_volume, &l.overflow_solid_volume_a, &l.bed_packing})
         io.one(*v);
     io.one(l.packing_seed);
+};
+
+const auto members = [](auto& io, auto& r) {
+    auto& h = r.health;
+    io.text(h.status);
+    io.text(h.reason);
+    io.one(h.max_overlap_ratio);
+    io.count(h.warnings);
+    for (auto& warning : h.warnings) io.text(warning);
+    layer_members(io, r.layer);
     auto& b = r.bed;
     for (auto* v : {&b.packing_fraction, &b.mean_coordination, &b.max_overlap_ratio, &b.speed_number,
                     &b.carried_weight_ratio, &b.seconds, &b.seconds_cold})
@@ -98,6 +109,13 @@ const auto members = [](auto& io, auto& r) {
          {&r.grain_steps, &r.all_grain_steps, &r.time_step, &r.bond_number, &r.seconds, &r.seconds_cold})
         io.one(*v);
     io.text(r.state_hash);
+    // of several passes or over powder only, so that the files of all others stay what they were
+    if (!io.more(r.passes)) return;
+    io.count(r.passes);
+    for (auto& pass : r.passes)
+        for (auto* v : {&pass.raised_solid_volume, &pass.carried_off_solid_volume}) io.one(*v);
+    io.count(r.earlier);
+    for (auto& layer : r.earlier) layer_members(io, layer);
 };
 
 }  // namespace

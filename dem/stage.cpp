@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dem/bulk.h"
+#include "dem/substrate.h"
 
 namespace gradwright {
 namespace {
@@ -65,13 +66,14 @@ bool level(Bed& bed, const Scene& scene, const PartitionCurve* partition, double
 /// Bodies and fixed grains of the machine around the levelled bed.
 void build_machine(Stage& stage, const Scene& scene) {
     const double platform = platform_start(scene), end = platform_end(scene);
-    stage.fixed = rough_surface(0, scene.dispenser_length, scene.width, -scene.bed_depth, scene.roughness,
+    stage.fixed = rough_surface(0, scene.dispenser_length, scene.width, -scene.floor_depth(), scene.roughness,
                                 scene.seed ^ 0xf100f);
-    if (scene.substrate == Substrate::fused) {
-        const auto substrate =
-            rough_surface(platform, end, scene.width, -scene.gap, scene.roughness, scene.seed ^ 0x5b57a7e);
-        stage.fixed.insert(stage.fixed.end(), substrate.begin(), substrate.end());
-    }
+    stage.platform_floor = stage.fixed.size();
+    const std::vector<GrainSpec> substrate = scene.substrate == Substrate::fused ? fused_surface(scene, 1)
+                                             : scene.substrate == Substrate::powder
+                                                 ? powder_floor(scene)
+                                                 : std::vector<GrainSpec>{};
+    stage.fixed.insert(stage.fixed.end(), substrate.begin(), substrate.end());
     auto add = [&](Body body) {
         body.material = kWallMaterial;
         body.adhesive = scene.adhesive_walls;
@@ -93,7 +95,10 @@ void build_machine(Stage& stage, const Scene& scene) {
     add(back);
     box(scene.dispenser_length, platform, 0);
     box(end, end + kFar, 0);
-    if (scene.substrate == Substrate::plate) box(platform, end, -scene.gap);
+    if (scene.substrate == Substrate::plate) {
+        stage.plate = static_cast<int>(stage.bodies.size());
+        box(platform, end, -scene.gap);
+    }
     Body blade;
     blade.kind = Body::Kind::box;
     blade.x1 = kBladeStart;
@@ -124,7 +129,19 @@ Stage set_stage(const Scene& scene, const PartitionCurve* partition, const Sprea
         return stage;
     }
     build_machine(stage, scene);
+    if (scene.substrate == Substrate::powder) {
+        stage.substrate = settled_substrate(scene, options, health);
+        BedFacts& facts = stage.bed.facts;
+        facts.seconds += stage.substrate.facts.seconds;
+        facts.seconds_cold += stage.substrate.facts.seconds_cold;
+        facts.from_cache = facts.from_cache && stage.substrate.facts.from_cache;
+    }
     return stage;
+}
+
+double deepest_floor(const Scene& scene) {
+    return std::max(scene.floor_depth(),
+                    scene.gap + scene.substrate_depth() + (scene.layers - 1) * scene.sink());
 }
 
 double quiet_energy(const Scene& scene, std::size_t grains) {
@@ -140,8 +157,32 @@ double bond_number(const Scene& scene, double work_of_adhesion) {
            (scene.powder[0].material.density * sphere_volume(0.5 * d) * scene.gravity);
 }
 
+Pass first_pass(const Scene& scene, const Stage& stage) {
+    Pass pass;
+    pass.gap = scene.gap;
+    pass.dosed_solid_volume = pass.raised_solid_volume = stage.dosed_solid_volume;
+    pass.stand.assign(stage.grains(), Stand::on_platform);
+    std::fill_n(pass.stand.begin(), stage.bed.x.size(), Stand::ahead);
+    return pass;
+}
+
+double carried_off_solid(const Scene& scene, const Stage& stage, const Pass& pass,
+                         std::span<const GrainPlace> places) {
+    std::vector<std::uint8_t> stays(pass.stand.size(), 0);
+    for (const GrainPlace& place : places) stays[place.bed_index] = place.x < platform_end(scene);
+    double solid = 0;
+    for (std::size_t k = 0; k < stays.size(); ++k)
+        if (pass.stand[k] == Stand::on_platform && !stays[k]) solid += sphere_volume(stage.radius(k));
+    return solid;
+}
+
 Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const GrainPlace> places,
                     RunHealth& health) {
+    return measure_layer(scene, stage, first_pass(scene, stage), places, health);
+}
+
+Layer measure_layer(const Scene& scene, const Stage& stage, const Pass& pass,
+                    std::span<const GrainPlace> places, RunHealth& health) {
     const Bed& bed = stage.bed;
     const double platform = platform_start(scene), end = platform_end(scene);
     const double d50 = scene.powder[0].size.d50;
@@ -151,20 +192,22 @@ Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const Grai
     layer.width = scene.width;
     layer.dispenser_length = scene.dispenser_length;
     layer.platform_length = scene.platform_length;
-    layer.gap = scene.gap;
-    layer.dosed_solid_volume = stage.dosed_solid_volume;
+    layer.gap = pass.gap;
+    layer.dosed_solid_volume = pass.dosed_solid_volume;
     layer.bed_packing = bed.facts.packing_fraction;
     layer.packing_seed = scene.seed;
     std::vector<std::uint8_t> present(bed.x.size(), 0);
     std::vector<double> floor_moves;
     for (const GrainPlace& place : places) {
         const std::size_t k = place.bed_index;
+        if (k >= bed.x.size()) continue;  // the substrate never counts
         const double volume = sphere_volume(bed.radius[k]);
         const bool is_a = stage.labelled && bed.material[k] == 0;
         present[k] = 1;
-        if (bed.z[k] < -scene.bed_depth + scene.powder[0].size.d90 && bed.x[k] > 2 * d50 &&
+        if (bed.z[k] < -scene.floor_depth() + scene.powder[0].size.d90 && bed.x[k] > 2 * d50 &&
             bed.x[k] < scene.dispenser_length - 4 * d50)
-            floor_moves.push_back(std::hypot(place.x - bed.x[k], place.z - bed.z[k]));
+            floor_moves.push_back(std::hypot(place.x - bed.x[k], place.z - pass.floor_rise - bed.z[k]));
+        if (pass.stand[k] != Stand::ahead) continue;
         if (place.x >= end) {
             layer.overflow_solid_volume += volume;
             if (is_a) layer.overflow_solid_volume_a += volume;
@@ -181,12 +224,12 @@ Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const Grai
         layer.is_a.push_back(is_a);
     }
     for (std::size_t k = 0; k < present.size(); ++k) {
-        if (present[k]) continue;
+        if (present[k] || pass.stand[k] != Stand::ahead) continue;
         layer.overflow_solid_volume += sphere_volume(bed.radius[k]);
         if (stage.labelled && bed.material[k] == 0)
             layer.overflow_solid_volume_a += sphere_volume(bed.radius[k]);
     }
-    if (!floor_moves.empty()) {
+    if (!floor_moves.empty() && pass.number == scene.layers) {
         std::sort(floor_moves.begin(), floor_moves.end());
         const double p95 = floor_moves[floor_moves.size() * 95 / 100];
         if (p95 > 0.1 * d50)

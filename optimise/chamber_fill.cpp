@@ -41,7 +41,17 @@ void ChamberFill::apply(GradationMap& map) const {
     for (double& cell : map.gi) cell = gi(cell);
 }
 
-ChamberFill chamber_fill(const Study& study, const Design& design) {
+ChamberFill ChamberFill::of_layer(int number, int layers, double dose_height) const {
+    ChamberFill fill = *this;
+    if (level() || number == 1) return fill;
+    if (number > 1)
+        fill.dose = later;
+    else
+        for (std::size_t k = 0; k < 2; ++k) fill.dose[k] += (layers - 1) * dose_height * later[k];
+    return fill;
+}
+
+ChamberFill chamber_fill_of_layer(const Study& study, const Design& design, int number) {
     ChamberFill fill;
     fill.share_a = study.scene.share_a;
     const Scene scene = scene_of(study, design, false, 0);
@@ -49,7 +59,13 @@ ChamberFill chamber_fill(const Study& study, const Design& design) {
         for (int chamber = 0; chamber < 2; ++chamber)
             fill.dose[chamber] = scene.dose_height - scene.headspace[chamber];
     fill.later = design.dose;
-    return fill;
+    // `dose` is a ratio to the common rise, the scene's height that of the larger piston
+    return fill.of_layer(number, study.scene.layers,
+                         scene.dose_height / std::max(design.dose[0], design.dose[1]));
+}
+
+ChamberFill chamber_fill(const Study& study, const Design& design) {
+    return chamber_fill_of_layer(study, design, judged_number(study));
 }
 
 }  // namespace gradwright

@@ -52,12 +52,18 @@ struct ChamberFill {
     /// their own in all (physics.md 1.3).
     std::vector<double> levelled(const std::vector<double>& gi) const;
 
+    /// The same chambers as they lay layer `number` (from 1) of several, 0 = all `layers` together: levels
+    /// act in the first one only.
+    ChamberFill of_layer(int number, int layers, double dose_height) const;
+
     /// Shares into GI, with their standard errors and cells.
     void apply(GradationProfile& profile, XDrift& drift) const;
     void apply(GradationMap& map) const;
 };
 
-/// Of the chambers of a study as a design fills and lifts them.
+/// Of the chambers of a study as a design fills and lifts them, for the judged layer.
 ChamberFill chamber_fill(const Study& study, const Design& design);
+/// For layer `number` from 1.
+ChamberFill chamber_fill_of_layer(const Study& study, const Design& design, int number);
 
 }  // namespace gradwright

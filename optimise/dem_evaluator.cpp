@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "dem/homogeneous_estimator.h"
-#include "optimise/chamber_fill.h"
+#include "optimise/laid_layers.h"
 #include "optimise/map_evaluator.h"
 
 namespace gradwright {
@@ -44,14 +44,13 @@ double agreement(const std::vector<double>& plain, const std::vector<double>& pl
 
 }  // namespace
 
-void DemEvaluator::read_profile(const Layer& layer, Evaluation& evaluation) const {
+void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Evaluation& evaluation) const {
     const Design& design = evaluation.design;
     const Footprint footprint = footprint_of(study_, design);
     const std::vector<double> label = carried_labels(layer);
     evaluation.profile = plain_profile(layer, label, footprint, study_.bins, evaluation.seed);
     evaluation.drift = plain_drift(layer, label, footprint, study_.bins, evaluation.seed);
     allow_for_beds(evaluation, kBedsOverBlocksPlain);
-    const ChamberFill fill = chamber_fill(study_, design);
     // a slot that collapses blurs the sides, which a premix would not show
     const bool alike = moves_alike(study_) && layer.periodic && fill.level() &&
                        (fill.pure() || study_.scene.plate_thickness == 0) &&
@@ -85,6 +84,31 @@ void DemEvaluator::read_profile(const Layer& layer, Evaluation& evaluation) cons
     evaluation.plain_check_drift = std::exchange(evaluation.drift, every.drift);
 }
 
+std::vector<LaidLayer> DemEvaluator::read_layers(const Evaluation& judged) const {
+    std::vector<LaidLayer> out;
+    const std::vector<Layer> layers = layers_of(last_);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        const int number = static_cast<int>(k) + 1;
+        LaidLayer one = laid_layer({&last_, 1}, number, footprint_of(study_, judged.design));
+        Evaluation own;
+        own.design = judged.design;
+        own.seed = judged.seed;
+        read_profile(layers[k], chamber_fill_of_layer(study_, judged.design, number), own);
+        one.profile = std::move(own.profile);
+        one.drift = std::move(own.drift);
+        judge_layer(study_, judged.design, one);
+        one.map = map_of(layers[k]);
+        out.push_back(std::move(one));
+    }
+    return out;
+}
+
+GradationMap DemEvaluator::map_of(const Layer& layer) const {
+    return gradation_map(layer, carried_labels(layer),
+                         {study_.scene.powder[0].material.density, study_.scene.powder[1].material.density},
+                         study_.bins.width, study_.dispenser_width);
+}
+
 Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
     const Scene scene = scene_of(study_, design, false, seed);
     Evaluation evaluation;
@@ -108,26 +132,24 @@ Evaluation DemEvaluator::evaluate(const Design& design, std::uint64_t seed) {
         ++runner_.full_spreads;
         evaluation.spreads = 1;
     }
-    const Layer& layer = last_.layer;
+    const Layer layer = judged_layer(study_, last_);
     if (evaluation.health.ok() && !layer.labelled) {
         evaluation.health.status = "not_labelled";
         evaluation.health.reason = "the spread carried no labels: it cannot confirm a partition";
     }
     if (evaluation.health.ok()) {
-        read_profile(layer, evaluation);
-        evaluation.map =
-            gradation_map(layer, carried_labels(layer),
-                          {study_.scene.powder[0].material.density, study_.scene.powder[1].material.density},
-                          study_.bins.width, study_.dispenser_width);
+        read_profile(layer, chamber_fill(study_, design), evaluation);
+        evaluation.map = map_of(layer);
         evaluation.coverage = coverage(layer, footprint_of(study_, design));
         evaluation.capture_fraction = layer.capture_fraction();
         evaluation.kinematic_error_bound = 1 - evaluation.capture_fraction;
         evaluation.packing_fraction = layer.packing_fraction();
-        evaluation.supply_ratio = supply_ratio(scene, layer.bed_packing, evaluation.packing_fraction);
+        evaluation.supply_ratio = supply_ratio_of(study_, scene, layer);
         if (layer.dosed_solid_volume > 0)
             evaluation.waste_fraction = layer.overflow_solid_volume / layer.dosed_solid_volume;
         if (layer.overflow_solid_volume > 0)
             evaluation.waste_a_share = layer.overflow_solid_volume_a / layer.overflow_solid_volume;
+        if (!last_.passes.empty()) evaluation.layers = read_layers(evaluation);
     }
     judge(study_, evaluation);
     // An interrupted run is not finished: a resumed one starts it again.

@@ -6,6 +6,7 @@
 // beside it (`plain_check`), and are what is quoted when they contradict it, or where powders, sides or fills
 // allow no such reading.
 #pragma once
+#include "optimise/chamber_fill.h"
 #include "optimise/journal.h"
 #include "optimise/spread_runner.h"
 
@@ -24,7 +25,10 @@ class DemEvaluator : public Evaluator {
 
   private:
     /// Fills profile, drift and their plain check from a labelled layer.
-    void read_profile(const Layer& layer, Evaluation& evaluation) const;
+    void read_profile(const Layer& layer, const ChamberFill& fill, Evaluation& evaluation) const;
+    GradationMap map_of(const Layer& layer) const;
+    /// Every layer of a run of several.
+    std::vector<LaidLayer> read_layers(const Evaluation& judged) const;
 
     const Study& study_;
     SpreadRunner& runner_;

@@ -14,6 +14,19 @@ namespace gradwright {
 enum class Fidelity { kinematic, map, full, lammps };
 const char* to_string(Fidelity fidelity);
 
+/// One of several layers that one run laid, or the only one on powder.
+struct LaidLayer {
+    int number = 1;  ///< from 1
+    GradationProfile profile;
+    XDrift drift;
+    Misfit misfit, drift_misfit;
+    GradationMap map;                                            ///< full only
+    double gap = 0;                                              ///< [m]
+    double dosed_solid_volume = 0, raised_solid_volume = 0;      ///< Layer, PassFacts [m3]
+    double laid_solid_volume = 0, carried_off_solid_volume = 0;  ///< [m3]
+    double capture_fraction = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;
+};
+
 struct Evaluation {
     Design design;
     Fidelity fidelity = Fidelity::full;
@@ -40,6 +53,9 @@ struct Evaluation {
     double kinematic_error_bound = 0;  ///< 1 - f where f is known, else 1
     long grains = 0, steps = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;
+    /// Each layer of several, the numbers above being the judged one's (target.layer); empty for one on fused
+    /// metal or a plate.
+    std::vector<LaidLayer> layers;
     int spreads = 0;  ///< DEM spreads whose result this used for the first time
     std::string state_hash;
     std::vector<double>

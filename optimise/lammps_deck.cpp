@@ -50,6 +50,9 @@ std::string lammps_shot_file(std::size_t shot) {
 std::string lammps_obstacle(const Scene& scene) {
     if (scene.blade_tip_radius > 0)
         return "LAMMPS's blade is a block with sharp edges: set machine.blade.tip_radius to 0 um";
+    if (scene.layers > 1 || scene.substrate == Substrate::powder)
+        return "LAMMPS spreads one layer on fused metal or a plate: set process.layers to 1 and "
+               "process.substrate to \"fused\"";
     return {};
 }
 

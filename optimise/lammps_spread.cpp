@@ -78,7 +78,7 @@ Snapshot snapshot_of(const LammpsDump& dump, const Scene& scene, const Stage& st
 
 /// Grains where no spread can bring them: below the floors, behind the back wall, beside the side walls.
 long escaped_grains(std::span<const GrainPlace> places, const Scene& scene) {
-    const double low = -std::max(scene.bed_depth, scene.gap) - 2 * scene.roughness;
+    const double low = -deepest_floor(scene) - 2 * scene.roughness;
     long count = 0;
     for (const GrainPlace& place : places)
         count += place.z < low || place.x < -scene.roughness ||

@@ -10,6 +10,7 @@
 
 #include "dem/homogeneous_estimator.h"
 #include "optimise/chamber_fill.h"
+#include "optimise/laid_layers.h"
 
 namespace gradwright {
 namespace {
@@ -144,7 +145,13 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
     for (int i = 0; i < count; ++i) {
         const std::uint64_t packing_seed = seed == 0 ? map_seed(study_.seed, i) : seed + 2 * i;
         Scene scene = scene_of(study_, level, true, packing_seed);
-        scene.powder[0] = scene.powder[powder];  // a spread without labels has powder A alone
+        if (powder == 1 && scene.substrate == Substrate::powder) {
+            // the powder under the layer is the same, whichever is laid on it
+            std::swap(scene.powder[0], scene.powder[1]);
+            scene.substrate_share_a = 1 - scene.substrate_share_a;
+        } else {
+            scene.powder[0] = scene.powder[powder];  // a spread without labels has powder A alone
+        }
         const SpreadResult result = runner_.spread(
             scene, nullptr,
             fmt::format("map spread {}{}", runner_.map_spreads + 1, powder == 0 ? "" : " with powder B"));
@@ -167,7 +174,11 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
             map.health.reason = result.health.reason;
             break;
         }
-        map.layers.push_back(result.layer);
+        map.layers.push_back(judged_layer(study_, result));
+        if (!result.passes.empty()) {
+            map.spreads.push_back(result);
+            map.spreads.back().snapshots.clear();
+        }
         map.beds.push_back(result.bed);
         map.state_hash = map.state_hash.empty() ? result.state_hash
                                                 : fmt::format("{}+{}", map.state_hash, result.state_hash);
@@ -234,6 +245,32 @@ void MapEvaluator::describe_turnover(const OriginMap& map, Evaluation& evaluatio
     }
 }
 
+std::vector<LaidLayer> MapEvaluator::read_layers(const Design& design, const OriginMap& map,
+                                                 const HomogeneousOptions& options) const {
+    std::vector<LaidLayer> out;
+    const Footprint footprint = footprint_of(study_, design);
+    Footprint in_strip = footprint;
+    in_strip.y_low = 0;
+    in_strip.y_high = map.spreads.front().layer.width;
+    for (int number = 1; number <= int(map.spreads.front().earlier.size()) + 1; ++number) {
+        LaidLayer one = laid_layer(map.spreads, number, in_strip);
+        std::vector<Layer> strips;
+        for (const SpreadResult& spread : map.spreads)
+            strips.push_back(layers_of(spread).at(static_cast<std::size_t>(number) - 1));
+        const PooledGrains grains = pool_grains(strips, footprint.x_low, footprint.x_high);
+        Evaluation own;
+        own.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
+        own.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
+        if (!grains.replicates()) allow_for_beds(own, kBedsOverBlocksMap);
+        chamber_fill_of_layer(study_, design, number).apply(own.profile, own.drift);
+        one.profile = std::move(own.profile);
+        one.drift = std::move(own.drift);
+        judge_layer(study_, design, one);
+        out.push_back(std::move(one));
+    }
+    return out;
+}
+
 Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted) {
     const auto begun = std::chrono::steady_clock::now();
     Evaluation evaluation;
@@ -249,7 +286,9 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
     evaluation.kinematic_error_bound = 1 - map.capture_fraction;
     evaluation.packing_fraction = map.packing_fraction;
     evaluation.waste_fraction = map.waste_fraction;
-    evaluation.supply_ratio = supply_ratio(map.scene, map.bed_packing, map.packing_fraction);
+    evaluation.supply_ratio = map.spreads.empty()
+                                  ? supply_ratio(map.scene, map.bed_packing, map.packing_fraction)
+                                  : supply_ratio_of(study_, map.scene, map.layers.front());
     if (map.health.ok()) {
         Footprint footprint = footprint_of(study_, design);
         HomogeneousOptions options;
@@ -295,6 +334,7 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
                 fill.apply(evaluation.plain_check, evaluation.plain_check_drift);
             }
             fill.apply(evaluation.map);
+            if (!map.spreads.empty()) evaluation.layers = read_layers(design, map, options);
         }
     }
     judge(study_, evaluation);

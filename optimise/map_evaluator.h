@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "dem/homogeneous_estimator.h"
 #include "optimise/heap_order.h"
 #include "optimise/journal.h"
 #include "optimise/spread_runner.h"
@@ -20,6 +21,7 @@ struct OriginMap {
     /// Of a map that was not spread but lies between others: what each layer counts, sum 1. Empty: a map that
     /// was spread.
     std::vector<double> share;
+    std::vector<SpreadResult> spreads;  ///< without pictures; of several layers only: what each of them is
     std::vector<BedFacts> beds;
     Scene scene;  ///< of the first strip
     std::uint64_t seed = 0;
@@ -72,6 +74,9 @@ class MapEvaluator : public Evaluator {
     Key key_of(const Design& design, std::uint64_t seed) const;
     Evaluation with(const Design& design, OriginMap& map, bool quoted);
 
+    /// Every layer of a run of several.
+    std::vector<LaidLayer> read_layers(const Design& design, const OriginMap& map,
+                                       const HomogeneousOptions& options) const;
     static void describe_turnover(const OriginMap& map, Evaluation& evaluation);
 
     const Study& study_;

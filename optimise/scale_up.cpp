@@ -84,7 +84,7 @@ ScaledHeap scale_up(const Study& study, const Design& design, SpreadRunner& runn
         std::string reason = result.health.reason;
         std::string status = result.health.status;
         if (result.health.ok()) try {
-                heap.strips.push_back(heap_order(result.layer, scene,
+                heap.strips.push_back(heap_order(judged_layer(study, result), scene,
                                                  footprint.x_low / study.scene.platform_length,
                                                  footprint.x_high / study.scene.platform_length));
                 heap.strips.back().grains = result.grains;
@@ -94,7 +94,7 @@ ScaledHeap scale_up(const Study& study, const Design& design, SpreadRunner& runn
                 reason = nothing.what();
             }
         if (status == "ok") {
-            if (own) heap.kernel = result.layer;  // lengths rise: the longest stays
+            if (own) heap.kernel = judged_layer(study, result);  // lengths rise: the longest stays
             heap.state_hash += (heap.state_hash.empty() ? "" : "+") + result.state_hash;
         } else if (own || status == "interrupted") {
             return failed(status, fmt::format("{}: {}", name, reason));

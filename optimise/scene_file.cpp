@@ -20,6 +20,7 @@ constexpr double kLargestModulus = 2000e9;  // [Pa]
 constexpr double kLargestDensity = 30000;   // [kg/m3]
 constexpr double kDensestPacking = 0.74;    // equal spheres cannot lie denser
 constexpr double kLargestCoarsening = 4;    // beyond it a layer is one grain
+constexpr long kMostLayers = 1000;          // a dispenser holds fewer doses
 constexpr double kGrainsAcross = 3;         // a dispenser narrower than 3 d does not flow (physics.md 7)
 
 const char* const kPaper =
@@ -276,17 +277,22 @@ void read_process(TomlReader& reader, Section& root, Study& study) {
     scene.blade_speed =
         process.quantity("blade_speed", "speed", {scene.blade_speed, "our default: the paper gives none"},
                          Range::above_to(0, kLargestSpeed));
-    const TomlReader::Found substrate = process.find("substrate");
-    const auto* wanted = substrate.node ? substrate.node->as_string() : nullptr;
-    if (wanted && wanted->get() == "powder")
-        process.problem(substrate, "substrate", "spreading over unfused powder is not computed",
-                        "choose \"fused\" or \"plate\"");
-    else
-        scene.substrate = process.choice("substrate", {"fused", "plate"}, "fused",
-                                         "a part in the middle of its build") == "plate"
-                              ? Substrate::plate
-                              : Substrate::fused;
+    const std::string substrate = process.choice("substrate", {"fused", "plate", "powder"}, "fused",
+                                                 "a part in the middle of its build");
+    scene.substrate = substrate == "plate"    ? Substrate::plate
+                      : substrate == "powder" ? Substrate::powder
+                                              : Substrate::fused;
     const bool fused = scene.substrate == Substrate::fused;
+    scene.layers =
+        static_cast<int>(process.integer("layers", 1, "one dose and one pass of the blade", 1, kMostLayers));
+    if (scene.substrate == Substrate::powder) {
+        scene.substrate_share_a = process.number(
+            "substrate_share_a", {1, "the powder under the layer is powder A"}, Range::between(0, 1));
+    } else {
+        process.know("substrate_share_a");
+        if (process.has("substrate_share_a"))
+            study.warnings.push_back("process.substrate_share_a has no effect: substrate is not \"powder\"");
+    }
     scene.roughness = process.quantity(
         "roughness", "length", {scene.powder[0].size.d50, "D50 of powder A: fixed grains of that size"},
         Range::above_to(0, kLargestGrain));
@@ -317,7 +323,7 @@ void read_process(TomlReader& reader, Section& root, Study& study) {
     const bool is_length = rule_of_gap != "steady" && rule_of_gap != "layer";
     reader.record({"process.gap", rule_of_gap, is_length ? unit_of(rule_of_gap) : "",
                    gap.node ? gap.origin : "default",
-                   gap.node ? gap.note : "steady over fused metal, one layer over a plate"});
+                   gap.node ? gap.note : "steady over fused metal, one layer over a plate or powder"});
     if (study.gap_steady) {
         study.steady_packing = process.number(
             "steady_packing",
@@ -370,8 +376,13 @@ void read_process(TomlReader& reader, Section& root, Study& study) {
                         number(scene.gap), number(d_max)));
     if (!fused && study.gap_steady)
         study.warnings.push_back(
-            "gap \"steady\" belongs to a fused substrate: the first layer on a bare plate has the "
-            "gap of one layer (process.gap = \"layer\")");
+            "gap \"steady\" belongs to a fused substrate: the first layer on a bare plate, and every layer "
+            "on powder, has the gap of one layer (process.gap = \"layer\")");
+    if (!fused && is_length && scene.layers > 1)
+        study.warnings.push_back(fmt::format(
+            "process.gap {} is the first layer's: the platform sinks by one layer thickness ({}) before each "
+            "later one, which is its gap",
+            number(scene.gap), number(scene.layer_thickness)));
     if (fused && rule_of_gap == "layer")
         study.warnings.push_back(
             "gap \"layer\" over fused metal is the first layer's only: the melt shrinks and the gap "

@@ -111,7 +111,7 @@ bool StrategyRun::confirm(ConfirmedDesign& round) {
     if (round.snapshots.empty()) round.snapshots = full.last().snapshots;
     result.beds.push_back(full.last().bed);
     round.confirmations.push_back(evaluation);
-    round.layers.push_back(full.last().layer);
+    round.layers.push_back(judged_layer(study, full.last()));
     summarise(study, round);
     return true;
 }

@@ -46,6 +46,25 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
     return coarsening == 1 ? scene : coarse_grained(scene, coarsening);
 }
 
+int judged_number(const Study& study) {
+    if (study.judged_layer == kAllLayers && study.scene.layers > 1) return 0;
+    return study.judged_layer > 0 ? study.judged_layer : study.scene.layers;
+}
+
+std::vector<Layer> layers_of(const SpreadResult& spread) {
+    std::vector<Layer> layers = spread.earlier;
+    layers.push_back(spread.layer);
+    return layers;
+}
+
+Layer judged_layer(const Study& study, const SpreadResult& spread) {
+    if (spread.earlier.empty()) return spread.layer;
+    const int number = judged_number(study);
+    if (number == 0) return pooled(layers_of(spread));
+    const auto before = static_cast<std::size_t>(number) - 1;
+    return before < spread.earlier.size() ? spread.earlier[before] : spread.layer;
+}
+
 double supply_ratio(const Scene& scene, double bed_packing, double layer_packing) {
     const double needed = scene.gap * layer_packing * scene.platform_length;
     const double dose = scene.dose_height - 0.5 * (scene.headspace[0] + scene.headspace[1]);

@@ -117,6 +117,9 @@ struct ScaleUp {
     bool on() const { return !lengths.empty(); }
 };
 
+/// Which layer of several is judged (target.layer): a number from 1, or one of these.
+inline constexpr int kLastLayer = 0, kAllLayers = -1;
+
 struct Study {
     std::string name;  ///< file stem, or [study] name
     std::string file;  ///< path as given
@@ -134,6 +137,7 @@ struct Study {
     std::vector<std::string> reductions;  ///< named: see kReductions
     double map_coarsening = 1;            ///< grains of the map's spreads, in real grains [-]
     double full_coarsening = 1;           ///< of every other spread
+    int judged_layer = kLastLayer;        ///< what misfit, drift and verdict are about
     Target target;
     Footprint footprint;  ///< default: the whole platform
     BinGrid bins;         ///< default 0.2 mm over the width
@@ -166,6 +170,12 @@ struct Design {
 /// headspaces, of which the chamber with the smaller dose has the difference; `strip`: the map's narrow
 /// periodic strip. Seed is the packing seed.
 Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64_t seed);
+/// Number of the judged layer, the last one's where that is asked for; 0 where all are.
+int judged_number(const Study& study);
+/// The layer that the study judges: one of the spread's, or all pooled.
+Layer judged_layer(const Study& study, const SpreadResult& spread);
+/// All layers of a spread, the first first.
+std::vector<Layer> layers_of(const SpreadResult& spread);
 /// h phi_bed A_dispenser / (g phi_layer A_platform), h less the chambers' mean headspace [-]
 double supply_ratio(const Scene& scene, double bed_packing, double layer_packing);
 

@@ -76,6 +76,11 @@ void read_design_space(TomlReader& reader, Section& root, Study& study) {
                                        "one piston under both chambers", Range::above_to(0, 10));
     }
     dose.finish();
+    for (const int i : {0, 1})
+        if (scene.layers > 1 && (design.dose[i].free || design.dose[i].value != 1))
+            reader.conflict({i == 0 ? "design_space.dose.A" : "design_space.dose.B", "process.layers"},
+                            "pistons of their own are spread for a single layer only",
+                            "leave design_space.dose out, or process.layers at 1");
     Section premix = space.sub("premix");
     const Default pure[2] = {{1, "pure powder"}, {0, "pure powder"}};
     for (const int i : {0, 1})
@@ -272,6 +277,23 @@ std::size_t section_index(const std::string& key) {
                                     kSections.begin());
 }
 
+void warn_of_layers(Study& study) {
+    const auto& fill = study.design_space.fill_fraction;
+    const bool fills = fill[0].free || fill[1].free || fill[0].value != fill[1].value;
+    if (study.scene.layers > 1 && fills && judged_number(study) != 1)
+        study.warnings.push_back(fmt::format(
+            "unequal fill fractions act in the first layer only, and target.layer judges {}: the blade has "
+            "levelled the chambers by then",
+            judged_number(study) == 0 ? "all layers together"
+                                      : fmt::format("layer {}", judged_number(study))));
+    if (study.scene.layers > 1 && study.scene.substrate == Substrate::fused &&
+        (study.footprint.x_low > 0 || study.footprint.x_high < study.scene.platform_length))
+        study.warnings.push_back(
+            "every layer is melted over the whole platform, the part's footprint is smaller: in the machine "
+            "the "
+            "powder beside the part stays");
+}
+
 }  // namespace
 
 std::string InputProblem::text() const {
@@ -323,6 +345,7 @@ Study parse_study(const std::string& text, const std::string& file_name,
         throw InputError{reader.problems()};
     }
     warn_of_estimates(reader, study);
+    warn_of_layers(study);
     study.inputs = std::move(reader.inputs());
     std::stable_sort(study.inputs.begin(), study.inputs.end(), [](const InputEntry& a, const InputEntry& b) {
         return section_index(a.key) < section_index(b.key);

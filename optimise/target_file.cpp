@@ -188,6 +188,31 @@ void read_aba(TomlReader& reader, Section& target, Study& study) {
         study.target = aba_target(outer, inner, in.first, in.second, out.first, out.second);
 }
 
+/// target.layer: "last", "all" or a number from 1.
+void read_layer(TomlReader& reader, Section& target, Study& study) {
+    const TomlReader::Found found = target.find("layer");
+    const int layers = study.scene.layers;
+    if (!found.node) {
+        reader.record({"target.layer", "last", "", "default", "of several layers the last one is judged"});
+        return;
+    }
+    const auto* word = found.node->as_string();
+    const auto* number = found.node->as_integer();
+    const std::string mend = fmt::format("write \"last\", \"all\" or a number from 1 to {}", layers);
+    if (word && (word->get() == "last" || word->get() == "all")) {
+        study.judged_layer = word->get() == "all" ? kAllLayers : kLastLayer;
+        reader.record({"target.layer", word->get(), "", found.origin, found.note});
+    } else if (!number) {
+        target.problem(found, "layer", "must be \"last\", \"all\" or a whole number", mend);
+    } else if (number->get() < 1 || number->get() > layers) {
+        target.problem(found, "layer", fmt::format("is not among the {} that process.layers lays", layers),
+                       mend);
+    } else {
+        study.judged_layer = static_cast<int>(number->get());
+        reader.record({"target.layer", fmt::format("{}", study.judged_layer), "-", found.origin, found.note});
+    }
+}
+
 void read_shape(TomlReader& reader, Section& target, Study& study) {
     if (!target.has("shape")) {
         target.know("shape");
@@ -269,6 +294,7 @@ void read_target(TomlReader& reader, Section& root, Study& study) {
     }
     read_shape(reader, target, study);
     read_zones(reader, target, study);
+    read_layer(reader, target, study);
 
     const double width = study.dispenser_width, length = study.scene.platform_length;
     study.bins.width = target.quantity("bin_width", "length", {0.2e-3, "0.2 mm: section 2.1 of the paper"},

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "dem/stage.h"
+
 namespace gradwright {
 namespace {
 
@@ -60,7 +62,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 
 nlohmann::json grain_picture(const Snapshot& s, const Scene& scene, std::size_t most) {
     const double end = scene.dispenser_length + scene.land + scene.platform_length + scene.second_land;
-    const double floor = -1.5 * std::max(scene.bed_depth, scene.gap) - 1e-4;
+    const double floor = -1.5 * deepest_floor(scene) - 1e-4;
     std::vector<float> y(s.y);
     if (scene.sides == Sides::periodic && scene.width > 0)
         for (float& value : y) value -= static_cast<float>(std::floor(value / scene.width) * scene.width);

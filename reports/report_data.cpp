@@ -75,7 +75,7 @@ json plan_json(const Study& study, const StudyResult& result) {
             {"platform_length_m", number(scene.platform_length)},
             {"second_land_m", number(scene.second_land)},
             {"gap_m", number(scene.gap)},
-            {"bed_depth_m", number(scene.bed_depth)},
+            {"bed_depth_m", number(scene.floor_depth())},
             {"dose_height_m", number(scene.dose_height)},
             {"footprint",
              {number(study.footprint.x_low + shift), number(study.footprint.x_high + shift),

@@ -6,6 +6,7 @@
 
 #include "optimise/chamber_fill.h"
 #include "reports/json_support.h"
+#include "reports/layers_json.h"
 #include "reports/provenance.h"
 #include "reports/wording.h"
 
@@ -317,6 +318,8 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
             {"supply_ratio", found(result.supply_ratio)},
             {"design", design_json(study, result.design)},
             {"profile", profile_json(study, result)},
+            {"judged_layer", judged_layer_json(study)},
+            {"layers", layers_json(study, result)},
             {"coverage", found(result.coverage)},
             {"waste_fraction", found(result.waste_fraction)},
             {"waste_a_share", found(result.confirmations.empty() ? kUndefined : result.waste_a_share)},
@@ -371,6 +374,8 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
                          {"weight", numbers(evaluation.weight)},
                          {"band", "simultaneous 95 % over the bins"}};
     object["map"] = map;
+    object["judged_layer"] = judged_layer_json(study);
+    object["layers"] = layers_json(study, evaluation);
     if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
     object["x_drift"] = drift;
     // a strip's grains carry no powder

@@ -171,7 +171,7 @@ SpreadFigures spread_figures(const Study& study, const Design& design, const Spr
     figures.made_d10_d50_d90 = spread.bed.made_d10_d50_d90;
     figures.bed_packing = spread.bed.packing_fraction;
     figures.bond_number = spread.bond_number;
-    measure_line(study, design, spread.layer, composition, figures);
+    measure_line(study, design, judged_layer(study, spread), composition, figures);
     measure_heap(study, design, spread, figures);
     return figures;
 }

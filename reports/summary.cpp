@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/layers_json.h"
 #include "reports/result_json.h"
 #include "reports/wording.h"
 
@@ -89,6 +90,7 @@ std::string summary(const Study& study, const StudyResult& result, const std::st
     else if (!result.predicted.profile.gi.empty())
         text += profile_table(result.predicted.profile, result.target, nullptr, result.band_low,
                               result.band_high, "predicted");
+    if (study.scene.layers > 1) text += "\n" + layers_text(study, mean_layers(study, result));
     if (result.straight && result.straight->health.ok())
         text += fmt::format(
             "\n  straight  the best straight partition on the same map: misfit {:.3f}, x drift {:.3f}\n",
@@ -135,6 +137,7 @@ std::string evaluation_summary_text(const Study& study, const Evaluation& evalua
         evaluation.misfit.value, evaluation.misfit.noise_floor, evaluation.drift.value,
         evaluation.drift.noise_floor, 100 * evaluation.capture_fraction, evaluation.supply_ratio,
         100 * evaluation.coverage);
+    text += layers_text(study, evaluation.layers);
     text += fmt::format("  {} grains, {} steps, {}, seed {}\n", evaluation.grains, evaluation.steps,
                         duration(evaluation.seconds), evaluation.seed);
     for (const std::string& warning : evaluation.health.warnings) text += "  warning   " + warning + "\n";

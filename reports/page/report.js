@@ -227,6 +227,23 @@
       ],
     });
   }
+  const layers = result.layers ?? [];
+  function layers_figure(width) {
+    const name = (l) => `layer ${l.number}`, shade = d3.scaleSequential([0, Math.max(1, layers.length - 1)], d3.interpolateViridis);
+    const points = layers.flatMap((l) => l.gi.map((v, b) => ({ name: name(l), y: l.y_m[b] * 1e3, v, low: l.band_low[b], high: l.band_high[b] }))).filter((p) => known(p.v));
+    return Plot.plot({
+      width, height: Math.max(260, Math.min(400, width * 0.5)), marginLeft: 44, marginRight: 12, marginBottom: 42, style, grid: true,
+      x: { domain: [0, y_end], label: "y across the spreading direction (mm)" }, y: { domain: [0, 1], nice: true, label: "gradation index GI" },
+      color: { domain: layers.map(name), range: layers.map((_, i) => shade(0.9 * i)), legend: true },
+      marks: [
+        Plot.line(bins.filter((b) => known(b.target)), { x: "y", y: "target", stroke: "#111", strokeWidth: 1.5, strokeDasharray: "7 4" }),
+        Plot.line(points, { x: "y", y: "v", stroke: "name", strokeWidth: 2 }),
+        Plot.dot(points, { x: "y", y: "v", fill: "name", r: 3.5, title: (p) => `${p.name}, y ${p.y.toFixed(2)} mm: ${gi(p.v)}${known(p.low) ? `, band ${gi(p.low)} to ${gi(p.high)}` : ""}` }),
+      ],
+    });
+  }
+  const layers_table = h("details", {}, h("summary", {}, "The numbers"), table(["layer", R("misfit"), R("x drift"), R("captured"), R("overflow"), R("coverage"), R("packing")],
+    layers.map((l) => [`${l.number}${l.judged ? " (judged)" : ""}`, gi(l.misfit.value), gi(l.x_drift.value), percent(l.capture_fraction), percent(l.waste_fraction), percent(l.coverage), gi(l.packing_fraction)])));
   const profile_table = h("details", {}, h("summary", {}, "The numbers"), table(["y mm", R("target"), R("predicted"), R("confirmed"), R("band")],
     bins.map((b) => [b.y.toFixed(2), gi(b.target), gi(b.predicted), gi(b.confirmed), known(b.low) ? `${gi(b.low)} to ${gi(b.high)}` : "–"])));
 
@@ -234,6 +251,7 @@
     figure("w12", "From the partition to the layer", "Plan view to scale: chambers A (blue) and B (orange) in the dispenser, the land that the blade crosses, and the GI of the layer on the platform. Dashed: the part's footprint, where everything is judged.", whole_plan),
     bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : heap ? "Predicted by the longest strip's layer, stretched to the machine; boxes: the 95 % band with what the extrapolation carries. No bed of this size was spread." : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
     bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third; the 95 % error bars hold for all bins together; shaded: tolerance (on the rms over the bins).", drift_figure) : null,
+    layers.length > 1 ? figure("w12", "GI(y) layer by layer", `The same partition, ${layers.length} doses and passes${proved ? `; mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders` : "; predicted on the origin map"}. Judged: ${result.judged_layer === "all" ? "all layers pooled" : `layer ${result.judged_layer}`}.`, layers_figure, layers_table) : null,
     map ? figure("w6", "GI over the platform", `Cells of ${mm(map.x_m.length > 1 ? map.x_m[1] - map.x_m[0] : null)} mm, ${map.of}. Dashed: the part's footprint. Grey: no powder.`, map_figure) : null,
     origin ? figure("w6", "Where the powder comes from", `Share of the laid solid by place in the dispenser and on the platform (${origin.layers} map layer${origin.layers === 1 ? "" : "s"}). A layer that takes the same mixture of places at every x has no drift.${heap ? " Measured on the longest strip and stretched to the machine." : ""}`, origin_figure) : null,
     origin ? figure("w12", "W(origin): the dispenser's share in the part", "Solid laid in the footprint that came from before x. The straight line would be a dispenser emptied evenly; the partition's first guess is read from this curve.", cumulative_figure) : null,

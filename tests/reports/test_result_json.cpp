@@ -188,6 +188,49 @@ TEST(ResultJson, evaluate_has_every_promised_name) {
     EXPECT_TRUE(object["map"]["gi"][0][3].is_null());
 }
 
+TEST(ResultJson, each_of_several_layers_has_its_entry_and_the_judged_one_is_marked) {
+    Study study = fixture::study();
+    Evaluation one = fixture::result(study).confirmations[0];
+    json object = evaluation_json(study, one, {});
+    ASSERT_EQ(object["layers"].size(), 1u) << "a single layer is listed too";
+    EXPECT_EQ(object["judged_layer"], 1);
+    EXPECT_EQ(object["layers"][0]["gi"], object["profile"]["gi"]);
+    EXPECT_EQ(object["layers"][0]["capture_fraction"], one.capture_fraction);
+    EXPECT_TRUE(object["layers"][0]["dosed_solid_m3"].is_null());
+
+    study.scene.layers = 2;
+    for (const int number : {1, 2}) {
+        LaidLayer layer;
+        layer.number = number;
+        layer.profile = one.profile;
+        for (double& gi : layer.profile.gi) gi *= 0.5 * number;
+        layer.drift = one.drift;
+        layer.dosed_solid_volume = 1e-11;
+        layer.laid_solid_volume = 4e-12 * number;
+        layer.capture_fraction = 0.4 * number;
+        one.layers.push_back(layer);
+    }
+    object = evaluation_json(study, one, {});
+    EXPECT_EQ(object["judged_layer"], 2);
+    ASSERT_EQ(object["layers"].size(), 2u);
+    EXPECT_FALSE(object["layers"][0]["judged"]);
+    EXPECT_TRUE(object["layers"][1]["judged"]);
+    EXPECT_EQ(object["layers"][0]["capture_fraction"], 0.4);
+    expect_required(schema("evaluate.schema.json"), object, "");
+
+    StudyResult result = fixture::result(study);
+    result.confirmations = {one, one};
+    for (LaidLayer& layer : result.confirmations[1].layers) layer.capture_fraction += 0.1;
+    const json design = to_json(study, result);
+    ASSERT_EQ(design["layers"].size(), 2u);
+    EXPECT_NEAR(design["layers"][0]["capture_fraction"].get<double>(), 0.45, 1e-12);
+    EXPECT_NEAR(design["layers"][1]["gi"][2].get<double>(), one.layers[1].profile.gi[2], 1e-12);
+    study.judged_layer = kAllLayers;
+    EXPECT_EQ(to_json(study, result)["judged_layer"], "all");
+    result.confirmations[0].health.status = "jammed";
+    EXPECT_TRUE(evaluation_json(study, result.confirmations[0], {})["layers"].empty());
+}
+
 TEST(ResultJson, undefined_bins_are_null_in_target_and_confirmed_alike) {
     const Study study = fixture::study();
     const json profile = to_json(study, fixture::result(study))["profile"];
