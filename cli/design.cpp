@@ -60,7 +60,7 @@ ExitCode exit_code_of(const StudyResult& result) {
 
 /// With --force: takes away what an earlier design left, so that two runs are never mixed in one folder. Only
 /// files whose names this program gives: evaluations (000012_full.json), spreads (spread-0123.bin), instants
-/// of the grains (particles_0001.vtkhdf) and what says that a run is finished.
+/// of the grains (particles_0001.vtkhdf), the hand-over and what says that a run is finished.
 void remove_earlier(const std::string& folder) {
     namespace fs = std::filesystem;
     const std::regex evaluation("[0-9]{6}_[a-z]+[.]json"),
@@ -72,6 +72,7 @@ void remove_earlier(const std::string& folder) {
         for (const auto& entry : fs::directory_iterator(place, failed))
             if (std::regex_match(entry.path().filename().string(), *pattern))
                 fs::remove(entry.path(), failed);
+    for (const char* name : kSpecNames) fs::remove(fs::path(folder) / "spec" / name, failed);
 }
 
 /// Which folder --resume means, and whether it holds a run. `design --resume OUT` alone takes everything from

@@ -1,5 +1,6 @@
 // OUT/spec: the hand-over's files, each whole or not there, and the manifest over them.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,11 @@
 #include "reports/step_file.h"
 
 namespace gradwright {
+
+/// Every name that write_spec may give a file.
+inline constexpr std::array<const char*, 9> kSpecNames = {
+    "partition.step", "partition.stl",   "flat_pattern.dxf", "drawing.pdf",    "drawing.svg",
+    "fill_sheet.pdf", "fill_sheet.html", "spec.json",        "manifest.sha256"};
 
 struct SpecFiles {
     std::vector<std::string> names;  ///< in the folder, in the order written; the manifest is the last

@@ -530,6 +530,12 @@ TEST_F(SpecFolder, gives_the_same_bytes_twice_and_a_manifest_over_them) {
     EXPECT_EQ(lines + 1, files.names.size());
     EXPECT_THAT(written("1/drawing.pdf"), StartsWith("%PDF-1."));
     EXPECT_THAT(written("1/fill_sheet.pdf"), StartsWith("%PDF-1."));
+    // two calls within a second agree on today's date too: the fixed one must be there
+    for (const char* name : {"1/drawing.pdf", "1/fill_sheet.pdf"})
+        EXPECT_NE(written(name).find("20000101000000Z)"), std::string::npos) << name;
+    if (files.step) {
+        EXPECT_NE(written("1/partition.step").find("'2000-01-01T00:00:00'"), std::string::npos);
+    }
     const std::string mark = "NOT VERIFIED: verdict undecided";
     for (const char* name : {"partition.stl", "flat_pattern.dxf", "fill_sheet.html", "spec.json"})
         EXPECT_THAT(written(std::string("1/") + name), HasSubstr(mark)) << name;
