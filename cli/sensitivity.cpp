@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/run_options.h"
 #include "cli/run_record.h"
+#include "reports/output_folder.h"
 #include "reports/safe_write.h"
 #include "reports/sensitivity_report.h"
 
@@ -98,9 +99,16 @@ ExitCode run_sensitivity_command(const SensitivityCommand& command, CommonOption
         writing(folder, [&] {
             write_file(page.string(), json_text(object) + "\n");
             write_file((fs::path(folder) / "tornado.svg").string(), tornado_svg(found));
+            const std::string data = (fs::path(folder) / "report_data.json").string();
+            if (!finished || !fs::exists(data)) return;
+            nlohmann::json report = nlohmann::json::parse(read_file(data));
+            report["sensitivity"] = object;
+            write_file(data, json_text(report) + "\n");
+            rebuild_report(folder);
         });
         if (!common.quiet)
-            fmt::print(stderr, "gradwright: sensitivity.json and tornado.svg are in {}\n", folder);
+            fmt::print(stderr, "gradwright: sensitivity.json and tornado.svg are in {}{}\n", folder,
+                       finished ? ", and report.html shows them" : "");
     }
     if (found.status == "interrupted") {
         fmt::print(stderr,

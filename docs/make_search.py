@@ -71,6 +71,9 @@ def table(name):
             "| strategy | spreads to its design | seconds | confirmed misfit | 95 % bounds | noise floor | x drift | objective | its own verdict | the judges' |",
             "|---|---|---|---|---|---|---|---|---|---|"]
     for s in a["strategies"]:
+        if s["confirmed_misfit"] is None and not s["spreads"]:
+            rows.append(f"| `{s['name']}` | not run | | | | | | | | |")
+            continue
         if s["confirmed_misfit"] is None:
             rows.append(f"| `{s['name']}` | {s['spreads']} | {number(s['seconds_cold'], '{:.0f}')} | | | | | | {s['termination']}: {s['reason']} | |")
             continue

@@ -46,6 +46,18 @@ std::vector<Bar> bars_of(const Sensitivity& s) {
     return bars;
 }
 
+/// First and total index of GI, all bins that count together: those of the bins by their variances.
+std::pair<double, double> indices_of_gi(const Sensitivity& s, std::size_t input) {
+    double first = 0, total = 0, variance = 0;
+    for (std::size_t o = 0; o + 2 < s.outputs.size() && o < s.sobol.variance.size(); ++o) {
+        first += s.sobol.index[input][o].first * s.sobol.variance[o];
+        total += s.sobol.index[input][o].total * s.sobol.variance[o];
+        variance += s.sobol.variance[o];
+    }
+    if (!(variance > 0)) return {0, 0};
+    return {first / variance, total / variance};
+}
+
 json input_json(const UncertainInput& input) {
     return {{"name", input.name},
             {"unit", input.unit},
@@ -76,6 +88,11 @@ json labels_json(const Sensitivity& s) {
                                  {"total_interval", {number(e.total_low), number(e.total_high)}}});
         row["morris"] = std::move(morris);
         row["sobol"] = std::move(sobol);
+        if (i < s.sobol.index.size()) {
+            const auto [first, total] = indices_of_gi(s, i);
+            row["gi_first"] = number(first);
+            row["gi_total"] = number(total);
+        }
         rows.push_back(std::move(row));
     }
     return rows;
@@ -197,22 +214,8 @@ std::string sensitivity_text(const Study& study, const Sensitivity& s) {
         const auto found = std::find_if(inputs.begin(), inputs.end(),
                                         [&](const UncertainInput& input) { return input.name == bar.name; });
         const auto i = std::size_t(found - inputs.begin());
-        double first = 0, total = 0;
-        const std::size_t gi = s.outputs.size() - 2;
-        if (bar.motion) {
-            first = total = s.effects[i].share;
-        } else {
-            double variance = 0;  // of all bins together
-            for (std::size_t o = 0; o < gi; ++o) {
-                first += s.sobol.index[i][o].first * s.sobol.variance[o];
-                total += s.sobol.index[i][o].total * s.sobol.variance[o];
-                variance += s.sobol.variance[o];
-            }
-            if (variance > 0) {
-                first /= variance;
-                total /= variance;
-            }
-        }
+        const auto [first, total] =
+            bar.motion ? std::pair(s.effects[i].share, s.effects[i].share) : indices_of_gi(s, i);
         out +=
             fmt::format("{:<30} {:>24} {:>9.3f} {:>8.3f} {:>8.2f} {:>8.2f}{}\n", bar.name, range(*found),
                         bar.size, bar.error, first, total, bar.unmeasured ? "  not measured: a default" : "");

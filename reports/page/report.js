@@ -322,6 +322,39 @@
       h("div", { class: "grid" }, views.filter(Boolean).map((v) => figure(...v))));
   }
 
+  // ---- sensitivity: there when `gradwright sensitivity OUT` has run ---------------------------------------------------
+  const moved = data.sensitivity;
+  if (moved) {
+    const ranked = moved.ranked.filter((r) => known(r.gi_rms)), floor = moved.noise_floor, budget = moved.budget;
+    const names = ranked.map((r) => r.name), kinds = ["label: on the map", "moves grains: on strips"];
+    const kind = (r) => kinds[+r.moves_grains];
+    const room = Math.min(230, 24 + 6.6 * d3.max(names, (n) => n.length));
+    const tornado = (width) => Plot.plot({
+      width, height: 70 + 24 * ranked.length, marginLeft: room, marginRight: 56, marginBottom: 42, style,
+      color: { domain: kinds, range: [blue, orange], legend: ranked.some((r) => r.moves_grains) },
+      x: { label: "change of GI over the input's range, rms over the bins", grid: true, domain: [0, 1.12 * Math.max(floor, d3.max(ranked, (r) => r.gi_rms + (r.error ?? 0)))] }, y: { label: null, domain: names },
+      marks: [Plot.barX(ranked, { x: "gi_rms", y: "name", fill: kind }),
+        Plot.ruleY(ranked.filter((r) => known(r.error)), { x1: (r) => Math.max(0, r.gi_rms - r.error), x2: (r) => r.gi_rms + r.error, y: "name", stroke: "#111", strokeWidth: 1.5 }),
+        Plot.ruleX([floor], { stroke: "#555", strokeDasharray: "5 4" }), Plot.ruleX([0]),
+        Plot.text(ranked, { x: (r) => r.gi_rms + (r.error ?? 0), y: "name", text: (r) => gi(r.gi_rms) + (r.unmeasured ? " *" : ""), textAnchor: "start", dx: 5, stroke: "#fff", strokeWidth: 4, fill: "#111" })],
+    });
+    const indices = moved.labels.filter((l) => known(l.gi_total)).flatMap((l) => [{ name: l.name, index: "first", v: l.gi_first }, { name: l.name, index: "total", v: l.gi_total }]);
+    const order = names.filter((n) => indices.some((d) => d.name === n));
+    const sobol = (width) => Plot.plot({
+      width, height: 70 + 30 * order.length, marginLeft: room, marginRight: 40, marginBottom: 42, style,
+      color: { domain: ["first", "total"], range: [blue, "#9aa5b1"], legend: true }, x: { label: "share of GI's variance", grid: true, domain: [Math.min(0, d3.min(indices, (d) => d.v)), Math.max(1, d3.max(indices, (d) => d.v))] },
+      fy: { label: null, domain: order, axis: "left" }, y: { axis: null, domain: ["first", "total"] },
+      marks: [Plot.barX(indices, { x: "v", y: "index", fy: "name", fill: "index", title: (d) => `${d.name}, ${d.index}: ${d.v.toFixed(3)}` }), Plot.ruleX([0])],
+    });
+    const um = (v) => (known(v) ? `±${(1e6 * v).toFixed(0)} µm` : "any");
+    section("sensitivity", "What moves it, and what tolerances it needs", h("div", { class: "grid" },
+      figure("w6", "What moves GI", `Each input over its range; dashed: the map's noise floor (${gi(floor)}).${ranked.some((r) => r.unmeasured) ? " * not measured: a default." : ""}${known(moved.surrogate.leave_one_out_gi_rms) ? ` The line through ${moved.surrogate.strips} strips misses one it has not seen by ${gi(moved.surrogate.leave_one_out_gi_rms)}.` : ""}`, tornado),
+      indices.length ? figure("w6", "Sobol indices of the labels", "First: alone; total: with all it acts through. Of GI, all bins that count together.", sobol) : null,
+      h("div", { class: "card w12" }, h("h3", {}, `Tolerance budget, ${budget.class}`),
+        h("p", { class: "note" }, `GI error ${gi(budget.worst_case_rms)} at worst, ${gi(budget.rss_rms)} root sum of squares, 95 % of plates within ${gi(budget.band_95_rms)} (tried on ${budget.check_on_maps.plates} plates on the map: ${(100 * budget.check_on_maps.inside).toFixed(1)} % of the bins inside). Needed: for a GI error of ${gi(budget.gi_error_promised)}${budget.gi_error_promised > budget.gi_error_asked ? `, the noise floor; ${gi(budget.gi_error_asked)} was asked` : ""}.`),
+        table(["dimension", R("nominal mm"), R("general"), R("share of the error"), R("needed"), ""], budget.dimensions.map((d) => [d.name, mm(d.nominal_m), um(d.tolerance_m), percent(d.share), um(d.needed_m), d.tighter_than_general ? "tighter than general" : ""])))));
+  }
+
   // ---- search --------------------------------------------------------------------------------------------------------
   const history = result.history.map((e, i) => ({ ...e, i: i + 1 }));
   const stages = [...new Set(history.map((e) => e.stage))];
