@@ -198,6 +198,11 @@ void read_scale_up(TomlReader& reader, Section& root, Study& study) {
                 {i == 0 ? "design_space.fill_fraction.A" : "design_space.fill_fraction.B"},
                 "must be 1 beside [scale_up]: an extrapolated machine is designed with full chambers",
                 "fill both to 1");
+    if (study.target.is_field())
+        reader.conflict(
+            {"target.shape"},
+            "\"field\" has no place beside [scale_up]: an extrapolated machine has no cells along x",
+            "ask for a gradation over y, or leave [scale_up] out");
     study.scale_up = {lengths, dosages};
     // what the law is fitted to is not a search that could be cut short
     const auto plan = scale_up_plan(study, own);
