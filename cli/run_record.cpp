@@ -42,6 +42,12 @@ RunRecord record_of(const Study& study, const std::vector<std::string>& set, con
     for (std::size_t k = 0; k < study.target.table_y.size(); ++k)
         record.inputs.emplace_back(fmt::format("target.table[{}]", k),
                                    fmt::format("{} {}", study.target.table_y[k], study.target.table_gi[k]));
+    const Target& field = study.target;
+    for (std::size_t k = 0; k < field.field_gi.size(); ++k)
+        record.inputs.emplace_back(
+            fmt::format("target.field[{}]", k),
+            fmt::format("{} {} {}", field.field_x[k % field.field_x.size()], field.field_gi[k],
+                        field.field_weight.empty() ? 1 : field.field_weight[k]));
     for (std::size_t k = 0; k < study.target.zones.size(); ++k) {
         const TargetZone& zone = study.target.zones[k];
         record.inputs.emplace_back(fmt::format("target.zone[{}]", k),

@@ -144,6 +144,54 @@ GradationProfile profile_of(const std::vector<BinMoments>& moments, const BinVar
     return profile;
 }
 
+namespace {
+GradationField field_with(const std::vector<std::vector<BinMoments>>& columns, const BinVariances& variances,
+                          const BinGrid& bins, double x_low, double x_high) {
+    GradationField field;
+    for (int bin = 0; bin < bins.count; ++bin) field.y_m.push_back(bins.centre(bin));
+    field.cells.degrees = variances.degrees;
+    const double width = (x_high - x_low) / static_cast<double>(columns.size());
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+        field.x_m.push_back(x_low + (static_cast<double>(column) + 0.5) * width);
+        for (int bin = 0; bin < bins.count; ++bin) {
+            const BinMoments& cell = columns[column][bin];
+            field.cells.y_m.push_back(bins.centre(bin));
+            field.cells.gi.push_back(cell.mean());
+            field.cells.standard_error.push_back(
+                std::sqrt(variances.variance[column * bins.count + static_cast<std::size_t>(bin)]));
+            field.cells.volume.push_back(cell.total());
+            field.cells.n_eff.push_back(cell.n_eff());
+        }
+    }
+    return field;
+}
+}  // namespace
+
+GradationField field_of(const std::vector<BinMoments>& whole, const BinVariances& whole_variances,
+                        const std::vector<std::vector<BinMoments>>& columns, const BinGrid& bins,
+                        double x_low, double x_high) {
+    BinVariances variances{{}, whole_variances.degrees};
+    for (const std::vector<BinMoments>& column : columns)
+        for (std::size_t b = 0; b < column.size(); ++b) {
+            const double iid = whole[b].iid_variance();
+            const double design_effect = iid > 0 ? whole_variances.variance[b] / iid : 1;
+            variances.variance.push_back(
+                column[b].total() > 0
+                    ? std::max(design_effect * column[b].iid_variance(), column[b].floor_variance())
+                    : kNan);
+        }
+    return field_with(columns, variances, bins, x_low, x_high);
+}
+
+GradationField field_of(const std::vector<std::vector<BinMoments>>& columns, const BinGrid& bins,
+                        double x_low, double x_high) {
+    std::vector<BinMoments> cells;
+    for (const std::vector<BinMoments>& column : columns)
+        cells.insert(cells.end(), column.begin(), column.end());
+    return field_with(columns, bin_variances(cells, BlockTrend::none, BinGrains::common), bins, x_low,
+                      x_high);
+}
+
 void summarise(XDrift& drift) {
     double square = 0, noise = 0;
     int bins = 0;

@@ -86,6 +86,13 @@ GradationProfile profile_of(const std::vector<BinMoments>& moments, const BinVar
 /// the whole range, v_b / iid_b, is put on the thirds' variance of independent grains; floors as above.
 XDrift drift_of(const std::vector<BinMoments>& whole, const BinVariances& whole_variances,
                 const std::vector<BinMoments>& first, const std::vector<BinMoments>& last);
+/// The same for columns of [x_low, x_high), equally wide: `columns` holds the moments of each, bin by bin.
+GradationField field_of(const std::vector<BinMoments>& whole, const BinVariances& whole_variances,
+                        const std::vector<std::vector<BinMoments>>& columns, const BinGrid& bins,
+                        double x_low, double x_high);
+/// Columns whose moments have blocks of their own, one for each of three replicates or more.
+GradationField field_of(const std::vector<std::vector<BinMoments>>& columns, const BinGrid& bins,
+                        double x_low, double x_high);
 /// Sets value and noise_floor (rms over the bins that are defined) from difference and standard_error.
 void summarise(XDrift& drift);
 

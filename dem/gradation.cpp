@@ -85,6 +85,20 @@ XDrift plain_drift(const Layer& layer, std::span<const double> label, const Foot
                     plain_moments(layer, label, footprint, bins, high - third, high, 1));
 }
 
+GradationField plain_field(const Layer& layer, std::span<const double> label, const Footprint& footprint,
+                           const BinGrid& bins, int columns, double block) {
+    const double low = footprint.x_low, width = (footprint.x_high - low) / columns;
+    const std::vector<BinMoments> whole = plain_moments(layer, label, footprint, bins, low, footprint.x_high,
+                                                        block_count(low, footprint.x_high, block));
+    std::vector<std::vector<BinMoments>> of_column;
+    for (int column = 0; column < columns; ++column)
+        of_column.push_back(
+            plain_moments(layer, label, footprint, bins, low + column * width,
+                          column + 1 == columns ? footprint.x_high : low + (column + 1) * width, 1));
+    return field_of(whole, bin_variances(whole, BlockTrend::linear, BinGrains::own), of_column, bins, low,
+                    footprint.x_high);
+}
+
 GradationMap gradation_map(const Layer& layer, std::span<const double> label,
                            const std::vector<double>& density_kg_m3_a_b, double cell, double width) {
     if (width <= 0) width = layer.width;
@@ -228,6 +242,16 @@ GradationProfile mean_profile(std::span<const GradationProfile> replicates) {
         }
         mean.standard_error[b] = std::sqrt(std::max(mean.standard_error[b], plateau_variance(mean.n_eff[b])));
     }
+    return mean;
+}
+
+GradationField mean_field(std::span<const GradationField> replicates) {
+    GradationField mean;
+    if (replicates.empty()) return mean;
+    std::vector<GradationProfile> cells;
+    for (const GradationField& replicate : replicates) cells.push_back(replicate.cells);
+    mean = replicates.front();
+    mean.cells = mean_profile(cells);
     return mean;
 }
 

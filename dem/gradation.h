@@ -42,6 +42,14 @@ struct XDrift {
     double degrees = 0;      ///< degrees of freedom behind them; 0 = not known
 };
 
+/// GI over columns along x and bins along y, with what a profile has: the judged twin of the map below.
+struct GradationField {
+    std::vector<double> x_m;  ///< centres of the columns [m]; empty = no field
+    std::vector<double> y_m;  ///< centres of the bins [m]
+    /// Column after column: cell column * y_m.size() + bin; y_m of the cells is the bin's.
+    GradationProfile cells;
+};
+
 struct GradationMap {
     std::vector<double> x_m, y_m;  ///< cell centres [m]
     std::vector<double> gi;        ///< row-major [y][x], NaN where empty
@@ -62,6 +70,11 @@ GradationProfile plain_profile(const Layer& layer, std::span<const double> label
                                int resamples = 200);
 XDrift plain_drift(const Layer& layer, std::span<const double> label, const Footprint& footprint,
                    const BinGrid& bins, std::uint64_t seed, double block = 0.3e-3, int resamples = 200);
+/// `columns` equal parts of the footprint along x. Standard errors: a column holds too few blocks for its
+/// own, so the design effect of the whole footprint is put on the cell's variance of independent grains, as
+/// for the drift.
+GradationField plain_field(const Layer& layer, std::span<const double> label, const Footprint& footprint,
+                           const BinGrid& bins, int columns, double block = 0.3e-3);
 GradationMap gradation_map(const Layer& layer, std::span<const double> label,
                            const std::vector<double>& density_kg_m3_a_b, double cell = 0.2e-3,
                            double width = 0);
@@ -96,7 +109,8 @@ double origin_x_quantile(std::span<const Layer> layers, double x_low, double x_h
 /// Mean profile of replicates (same bins). standard_error: from the replicates when >= 3, else propagated
 /// from theirs.
 GradationProfile mean_profile(std::span<const GradationProfile> replicates);
-/// The same for the x drift.
+/// The same for fields and for the x drift.
+GradationField mean_field(std::span<const GradationField> replicates);
 XDrift mean_drift(std::span<const XDrift> replicates);
 
 }  // namespace gradwright

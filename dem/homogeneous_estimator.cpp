@@ -237,6 +237,48 @@ XDrift homogeneous_drift(const PooledGrains& grains, const PartitionCurve& parti
                     moments_of(thirds.last, shares, bins, options.block));
 }
 
+std::vector<PooledGrains> columns_of(const PooledGrains& grains, int columns) {
+    std::vector<PooledGrains> parts;
+    const double width = (grains.x_high - grains.x_low) / columns;
+    for (int column = 0; column < columns; ++column)
+        parts.push_back(part_of(grains, grains.x_low + column * width,
+                                column + 1 == columns ? grains.x_high : grains.x_low + (column + 1) * width));
+    return parts;
+}
+
+GradationField homogeneous_field(const PooledGrains& grains, const PartitionCurve& partition,
+                                 const BinGrid& bins, int columns, const HomogeneousOptions& options) {
+    LabelShares shares(partition, bins, options);
+    const std::vector<PooledGrains> parts = columns_of(grains, columns);
+    std::vector<std::vector<BinMoments>> of_column;
+    if (options.resamples > 0) {
+        for (const PooledGrains& part : parts)
+            of_column.push_back(moments_of(part, shares, bins, options.block));
+        if (grains.replicates() &&
+            std::all_of(parts.begin(), parts.end(), [](const PooledGrains& p) { return p.replicates(); }))
+            return field_of(of_column, bins, grains.x_low, grains.x_high);
+        const std::vector<BinMoments> whole = moments_of(grains, shares, bins, options.block);
+        return field_of(whole, bin_variances(whole, trend_of(grains), BinGrains::common), of_column, bins,
+                        grains.x_low, grains.x_high);
+    }
+    GradationField field;
+    for (std::size_t column = 0; column < parts.size(); ++column) {
+        const GradationProfile profile = homogeneous_profile(parts[column], partition, bins, options);
+        field.x_m.push_back(grains.x_low +
+                            (static_cast<double>(column) + 0.5) * ((grains.x_high - grains.x_low) / columns));
+        field.y_m = profile.y_m;
+        const auto add = [](std::vector<double>& all, const std::vector<double>& more) {
+            all.insert(all.end(), more.begin(), more.end());
+        };
+        add(field.cells.y_m, profile.y_m);
+        add(field.cells.gi, profile.gi);
+        add(field.cells.standard_error, profile.standard_error);
+        add(field.cells.volume, profile.volume);
+        add(field.cells.n_eff, profile.n_eff);
+    }
+    return field;
+}
+
 GradationProfile homogeneous_profile(std::span<const Layer> layers, const PartitionCurve& partition,
                                      double x_low, double x_high, const BinGrid& bins,
                                      const HomogeneousOptions& options) {

@@ -175,6 +175,13 @@ GradationProfile homogeneous_profile(const PooledGrains& grains, const Partition
 XDrift homogeneous_drift(const PooledGrains& grains, const PartitionCurve& partition, const BinGrid& bins,
                          const HomogeneousOptions& options);
 
+/// The same estimator over `columns` equal parts of the range of x; with options.resamples 0 without standard
+/// errors.
+GradationField homogeneous_field(const PooledGrains& grains, const PartitionCurve& partition,
+                                 const BinGrid& bins, int columns, const HomogeneousOptions& options);
+/// Those parts.
+std::vector<PooledGrains> columns_of(const PooledGrains& grains, int columns);
+
 /// First and last third of the range of x of `grains`.
 struct Thirds {
     PooledGrains first, last;

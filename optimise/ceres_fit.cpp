@@ -169,15 +169,25 @@ std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const
 FitProblem::FitProblem(const Study& study, const Design& design, std::span<const Layer> layers,
                        std::span<const double> share)
     : bins(study.bins),
-      target(bin_targets(study)),
-      weight(bin_weights(study)),
-      drift_target(study.bins.count, 0.0),
+      target(study.target.is_field() ? field_targets(study) : bin_targets(study)),
+      weight(study.target.is_field() ? field_weights(study) : bin_weights(study)),
+      drift_target(drift_targets(study)),
+      drift_weight(drift_weights(study)),
       fill(chamber_fill(study, design)),
       norm(study.objective.norm),
       x_drift_weight(study.objective.x_drift_weight) {
     const Footprint footprint = footprint_of(study, design);
     grains = pool_grains(layers, footprint.x_low, footprint.x_high, share);
     thirds = thirds_of(grains);
+    if (!study.target.is_field()) {
+        columns = {grains};
+        return;
+    }
+    columns = columns_of(grains, study.columns);
+    for (std::size_t column = 0; column < columns.size(); ++column)
+        if (columns[column].size() == 0)  // no grain, no residual; `judge` makes up for it
+            for (int bin = 0; bin < bins.count; ++bin)
+                weight[column * bins.count + static_cast<std::size_t>(bin)] = 0;
 }
 
 bool FitProblem::usable() const {
@@ -185,20 +195,23 @@ bool FitProblem::usable() const {
 }
 
 int FitProblem::residual_count() const {
-    return 2 * int(std::count_if(weight.begin(), weight.end(), [](double w) { return w > 0; }));
+    const auto counts = [](double w) { return w > 0; };
+    return int(std::count_if(weight.begin(), weight.end(), counts) +
+               std::count_if(drift_weight.begin(), drift_weight.end(), counts));
 }
 
 std::pair<double, double> FitProblem::hard_misfit_and_drift(const PartitionFamily& family,
                                                             std::span<const double> p) const {
     std::vector<double> gi, difference;
     gradation<double>(family, p.data(), 0, gi, difference);
-    std::vector<double> counts(weight.size(), 0.0);
-    for (std::size_t b = 0; b < weight.size(); ++b) {
-        counts[b] = weight[b] > 0;
-        gi[b] -= target[b];
+    std::vector<double> counts(drift_weight.size(), 0.0);
+    for (std::size_t b = 0; b < weight.size(); ++b) gi[b] -= target[b];
+    for (std::size_t b = 0; b < drift_weight.size(); ++b) {
+        counts[b] = drift_weight[b] > 0;
         if (!difference.empty()) difference[b] -= drift_target[b];
     }
-    const double drift = difference.empty() ? 0 : norm_of(Norm::rmse, difference, counts);
+    const bool judged = std::any_of(counts.begin(), counts.end(), [](double c) { return c > 0; });
+    const double drift = difference.empty() || !judged ? 0 : norm_of(Norm::rmse, difference, counts);
     return {norm_of(norm, gi, weight), drift};
 }
 

@@ -5,6 +5,7 @@
 // Residuals over the bins that count (weight w_b > 0, n of them):
 //   sqrt(w_b / sum w) (GI_b - target_b)                then   sqrt(x_drift_weight / n) (drift_b -
 //   drift_target_b)
+// A target over x and y has its cells for the bins of the first kind, column after column.
 // so that |r|^2 = rmse^2 + x_drift_weight drift_rms^2: the square of the objective of `judge` without its
 // price of waste, which no partition changes. A family with a least bend radius appends its bend_excess.
 #pragma once
@@ -23,10 +24,12 @@ namespace gradwright {
 /// What the residuals are made of: grains of the footprint and what is asked of them, bin by bin.
 struct FitProblem {
     PooledGrains grains;
+    std::vector<PooledGrains> columns;  ///< of a field; else `grains` alone
     Thirds thirds;
     BinGrid bins;
-    std::vector<double> target, weight, drift_target;  ///< per bin [-]
-    ChamberFill fill;                                  ///< makes GI of the shares
+    std::vector<double> target, weight;              ///< per bin of each column [-]
+    std::vector<double> drift_target, drift_weight;  ///< per bin [-]
+    ChamberFill fill;                                ///< makes GI of the shares
     Norm norm = Norm::rmse;     ///< of the choice and the polish; the least squares are always rmse
     double x_drift_weight = 0;  ///< [-], >= 0; 0 leaves the drift to be only reported
 
@@ -42,7 +45,7 @@ struct FitProblem {
     void residuals(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& out) const;
     /// Of those two kinds; a family's bend_count comes on top.
     int residual_count() const;
-    /// Profile and drift of GI; `difference` is empty when a third holds no grain.
+    /// GI column after column, and drift; `difference` is empty when a third holds no grain.
     template <class T>
     void gradation(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
                    std::vector<T>& difference) const;
@@ -102,8 +105,13 @@ void FitProblem::gradation(const PartitionFamily& family, const T* p, double smo
             for (std::size_t b = 0; b < part.size(); ++b) sum[b] += sign * part[b];
     };
     family.visit_curves(p, [&](const auto& curve, double sign) {
-        smooth_profile_above<T>(grains, curve, bins, smoothing, profile);
-        add(gi, profile, sign);
+        std::vector<T> all;
+        for (const PooledGrains& column : columns) {
+            smooth_profile_above<T>(column, curve, bins, smoothing, profile);
+            if (profile.empty()) profile.assign(bins.count, T(0.0));  // weighs nothing: see the constructor
+            all.insert(all.end(), profile.begin(), profile.end());
+        }
+        add(gi, all, sign);
         smooth_profile_above<T>(thirds.first, curve, bins, smoothing, first);
         smooth_profile_above<T>(thirds.last, curve, bins, smoothing, last);
         if (first.empty() || last.empty()) return;
@@ -114,9 +122,23 @@ void FitProblem::gradation(const PartitionFamily& family, const T* p, double smo
     const bool above = family.orientation().a_above;
     for (std::size_t b = 0; b < gi.size(); ++b) {
         const T share = above ? gi[b] : T(1.0 - gi[b]);
-        gi[b] = fill.gi(share);
-        if (!difference.empty())
+        if (columns.size() == 1 && !difference.empty())
             difference[b] = fill.slope(share) * (above ? difference[b] : T(-difference[b]));
+        gi[b] = fill.gi(share);
+    }
+    if (columns.size() == 1 || difference.empty()) return;
+    // shares over the whole footprint: where the slope is taken, if it depends on them
+    std::vector<T> whole(difference.size(), T(0.0)), part;
+    if (!fill.level()) {
+        whole.clear();
+        family.visit_curves(p, [&](const auto& curve, double sign) {
+            smooth_profile_above<T>(grains, curve, bins, smoothing, part);
+            add(whole, part, sign);
+        });
+    }
+    for (std::size_t b = 0; b < difference.size(); ++b) {
+        const T share = above ? whole[b] : T(1.0 - whole[b]);
+        difference[b] = fill.slope(share) * (above ? difference[b] : T(-difference[b]));
     }
 }
 
@@ -127,15 +149,13 @@ void FitProblem::residuals(const PartitionFamily& family, const T* p, double smo
     gradation(family, p, smoothing, gi, difference);
     double sum = 0;
     int counting = 0;
-    for (const double w : weight) {
-        sum += w;
-        counting += w > 0;
-    }
+    for (const double w : weight) sum += w;
+    for (const double w : drift_weight) counting += w > 0;
     out.clear();
     for (std::size_t b = 0; b < weight.size(); ++b)
         if (weight[b] > 0) out.push_back(std::sqrt(weight[b] / sum) * (gi[b] - target[b]));
-    for (std::size_t b = 0; b < weight.size(); ++b) {
-        if (!(weight[b] > 0)) continue;
+    for (std::size_t b = 0; b < drift_weight.size(); ++b) {
+        if (!(drift_weight[b] > 0)) continue;
         // A third without grains has no drift to be judged by; coverage tells of it.
         if (difference.empty())
             out.push_back(T(0.0));

@@ -25,15 +25,22 @@ std::vector<double> ChamberFill::levelled(const std::vector<double>& gi) const {
 
 void ChamberFill::apply(GradationProfile& profile, XDrift& drift) const {
     if (pure() && level()) return;
-    for (std::size_t b = 0; b < profile.gi.size(); ++b) {
-        const double s = profile.gi[b], rate = slope(s);
-        profile.gi[b] = gi(s);
-        profile.standard_error[b] *= rate;
-        if (b >= drift.difference.size()) continue;
+    for (std::size_t b = 0; b < profile.gi.size() && b < drift.difference.size(); ++b) {
+        const double rate = slope(profile.gi[b]);
         drift.difference[b] *= rate;
         drift.standard_error[b] *= rate;
     }
+    apply(profile);
     summarise(drift);
+}
+
+void ChamberFill::apply(GradationProfile& profile) const {
+    if (pure() && level()) return;
+    for (std::size_t b = 0; b < profile.gi.size(); ++b) {
+        const double s = profile.gi[b];
+        profile.gi[b] = gi(s);
+        profile.standard_error[b] *= slope(s);
+    }
 }
 
 void ChamberFill::apply(GradationMap& map) const {

@@ -58,6 +58,7 @@ struct ChamberFill {
 
     /// Shares into GI, with their standard errors and cells.
     void apply(GradationProfile& profile, XDrift& drift) const;
+    void apply(GradationProfile& profile) const;
     void apply(GradationMap& map) const;
 };
 

@@ -39,8 +39,8 @@ ConfirmedDesign unconfirmed(const Evaluation& predicted) {
     ConfirmedDesign round;
     round.design = predicted.design;
     round.predicted = predicted;
-    round.expected = predicted.profile.gi;
-    round.expected_variance = squared(predicted.profile.standard_error);
+    round.expected = predicted.judged().gi;
+    round.expected_variance = squared(predicted.judged().standard_error);
     round.expected_drift = predicted.drift.difference;
     round.expected_drift_variance = squared(predicted.drift.standard_error);
     return round;
@@ -49,25 +49,29 @@ ConfirmedDesign unconfirmed(const Evaluation& predicted) {
 void summarise(const Study& study, ConfirmedDesign& round) {
     if (round.confirmations.empty()) return;
     std::vector<GradationProfile> profiles;
+    std::vector<GradationField> fields;
     std::vector<XDrift> drifts;
     for (const Evaluation& confirmation : round.confirmations) {
         profiles.push_back(confirmation.profile);
+        fields.push_back(confirmation.field);
         drifts.push_back(confirmation.drift);
     }
     Evaluation together = round.confirmations.front();
     together.profile = mean_profile(profiles);
+    if (study.target.is_field()) together.field = mean_field(fields);
     together.drift = mean_drift(drifts);
     judge(study, together);  // the same rule as for a single one
     round.mean = together.profile;
+    round.field = together.field;
     round.drift = together.drift;
     round.misfit = together.misfit;
     round.drift_misfit = together.drift_misfit;
     round.verdict = together.health.ok() ? combine(verdict_of(round.misfit), verdict_of(round.drift_misfit))
                                          : Verdict::undecided;
-    round.p_value = p_value(round.mean.gi, round.mean.standard_error, round.expected, round.expected_variance,
-                            together.weight);
+    round.p_value = p_value(together.judged().gi, together.judged().standard_error, round.expected,
+                            round.expected_variance, together.judged_weight());
     round.drift_p_value = p_value(round.drift.difference, round.drift.standard_error, round.expected_drift,
-                                  round.expected_drift_variance, together.weight);
+                                  round.expected_drift_variance, drift_weights(study));
 }
 
 bool better(const ConfirmedDesign& a, const ConfirmedDesign& b) {
@@ -78,7 +82,7 @@ bool better(const ConfirmedDesign& a, const ConfirmedDesign& b) {
 
 std::vector<double> smoothed_discrepancy(const std::vector<double>& confirmed,
                                          const std::vector<double>& predicted,
-                                         const std::vector<double>& weight) {
+                                         const std::vector<double>& weight, int run) {
     const int bins = int(weight.size());
     const auto counts = [&](int b) {
         return b >= 0 && b < bins && weight[b] > 0 && std::isfinite(confirmed[b]) &&
@@ -90,7 +94,7 @@ std::vector<double> smoothed_discrepancy(const std::vector<double>& confirmed,
         double sum = 0;
         int n = 0;
         for (int k = b - 1; k <= b + 1; ++k)
-            if (counts(k)) {
+            if (counts(k) && k / run == b / run) {
                 sum += confirmed[k] - predicted[k];
                 ++n;
             }

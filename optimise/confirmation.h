@@ -12,18 +12,19 @@ namespace gradwright {
 struct ConfirmedDesign {
     Design design;
     Evaluation predicted;  ///< on the map, or the search's own evaluator
-    /// What the confirmed mean is expected to be, per bin: prediction plus the correction in force, with its
-    /// variance.
+    /// What the confirmed mean is expected to be, per bin or cell of a field: prediction plus the correction
+    /// in force, with its variance.
     std::vector<double> expected, expected_variance, expected_drift, expected_drift_variance;
     std::vector<Evaluation> confirmations;  ///< those with numbers
     std::vector<Layer> layers;              ///< of those
     std::vector<Snapshot> snapshots;        ///< of the first of those
     GradationProfile mean;
+    GradationField field;  ///< mean of the fields, where one is asked for
     XDrift drift;
     Misfit misfit, drift_misfit;
     Verdict verdict = Verdict::undecided;
     double p_value = 1,
-           drift_p_value = 1;  ///< chi-squared equality of expected and confirmed over the bins that count
+           drift_p_value = 1;  ///< chi-squared equality of expected and confirmed over what counts
 
     /// How far from its tolerances: max(misfit / tolerance, drift / tolerance), debiased; < 1 is good.
     double distance() const;
@@ -42,9 +43,10 @@ void summarise(const Study& study, ConfirmedDesign& round);
 bool better(const ConfirmedDesign& a, const ConfirmedDesign& b);
 
 /// Discrepancy confirmed - predicted, mean of three neighbouring counting bins; 0 where nothing counts
-/// (manifold mapping: noise of single bins must not be built into a partition).
+/// (manifold mapping: noise of single bins must not be built into a partition). Neighbours stand in one run
+/// of `run` bins: a field's column.
 std::vector<double> smoothed_discrepancy(const std::vector<double>& confirmed,
                                          const std::vector<double>& predicted,
-                                         const std::vector<double>& weight);
+                                         const std::vector<double>& weight, int run);
 
 }  // namespace gradwright

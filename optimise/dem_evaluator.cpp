@@ -50,6 +50,8 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     const std::vector<double> label = carried_labels(layer);
     evaluation.profile = plain_profile(layer, label, footprint, study_.bins, evaluation.seed);
     evaluation.drift = plain_drift(layer, label, footprint, study_.bins, evaluation.seed);
+    if (study_.target.is_field())
+        evaluation.field = plain_field(layer, label, footprint, study_.bins, study_.columns);
     allow_for_beds(evaluation, kBedsOverBlocksPlain);
     // a slot that collapses blurs the sides, which a premix would not show
     const bool alike = moves_alike(study_) && layer.periodic && fill.level() &&
@@ -64,15 +66,21 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     const PooledGrains grains = pool_grains({&layer, 1}, footprint.x_low, footprint.x_high);
     every.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
     every.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
+    if (study_.target.is_field())
+        every.field = homogeneous_field(grains, design.partition, study_.bins, study_.columns, options);
     allow_for_beds(every, kBedsOverBlocksMap);
     fill.apply(every.profile, every.drift);
+    fill.apply(every.field.cells);
 
     const std::vector<double> weight = bin_weights(study_);
     const double profile_p =
         agreement(evaluation.profile.gi, evaluation.profile.standard_error, every.profile.gi, weight);
     const double drift_p = agreement(evaluation.drift.difference, evaluation.drift.standard_error,
                                      every.drift.difference, weight);
-    evaluation.every_grain = std::min(profile_p, drift_p) >= kSignificance / 2;  // two tests
+    const double field_p = agreement(evaluation.field.cells.gi, evaluation.field.cells.standard_error,
+                                     every.field.cells.gi, field_weights(study_));
+    const int tests = study_.target.is_field() ? 3 : 2;
+    evaluation.every_grain = std::min({profile_p, drift_p, field_p}) >= kSignificance / tests;
     if (!evaluation.every_grain) {
         evaluation.health.warnings.push_back(fmt::format(
             "bins of their own grains contradict what all grains of the spread say (p = {:.2g}, drift "
@@ -82,6 +90,7 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     }
     evaluation.plain_check = std::exchange(evaluation.profile, every.profile);
     evaluation.plain_check_drift = std::exchange(evaluation.drift, every.drift);
+    evaluation.field = every.field;
 }
 
 std::vector<LaidLayer> DemEvaluator::read_layers(const Evaluation& judged) const {

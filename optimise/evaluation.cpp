@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gradwright {
 namespace {
@@ -20,6 +21,33 @@ double mean_weight(const Target& target, double low, double high) {
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
         sum += (cuts[i + 1] - cuts[i]) * target.weight(0.5 * (cuts[i] + cuts[i + 1]));
     return sum / (high - low);
+}
+
+/// Does the bin lie in the footprint and outside the side margins of 2 D90?
+bool judged_bin(const Study& study, int bin) {
+    const double margin = 2 * study.full_coarsening *
+                          std::max(study.scene.powder[0].size.volume_quantile(0.9),
+                                   study.scene.powder[1].size.volume_quantile(0.9));
+    const double slack = kRoundOff * study.bins.width;
+    const double low = std::max(study.footprint.y_low, margin) - slack;
+    const double high = std::min(study.footprint.y_high, study.dispenser_width - margin) + slack;
+    const double y = study.bins.low(bin);
+    return y >= low && y + study.bins.width <= high;
+}
+
+/// Target per bin, of a field its mean over [x_low, x_high).
+std::vector<double> targets_over(const Study& study, double x_low, double x_high) {
+    const Target target = study.target.over_x(x_low, x_high);
+    std::vector<double> mean(study.bins.count);
+    for (int bin = 0; bin < study.bins.count; ++bin)
+        mean[bin] = target.bin_mean(study.bins.low(bin), study.bins.low(bin) + study.bins.width);
+    return mean;
+}
+
+/// x range of a column of the footprint [m].
+std::pair<double, double> column_of(const Study& study, int column) {
+    const double low = study.footprint.x_low, width = (study.footprint.x_high - low) / study.columns;
+    return {low + column * width, low + (column + 1) * width};
 }
 
 void widen_as_one(Misfit& misfit, double degrees) {
@@ -56,38 +84,90 @@ Footprint footprint_of(const Study& study, const Design& design) {
 }
 
 std::vector<double> bin_weights(const Study& study) {
-    const double margin = 2 * study.full_coarsening *
-                          std::max(study.scene.powder[0].size.volume_quantile(0.9),
-                                   study.scene.powder[1].size.volume_quantile(0.9));
-    const double slack = kRoundOff * study.bins.width;
-    const double low = std::max(study.footprint.y_low, margin) - slack;
-    const double high = std::min(study.footprint.y_high, study.dispenser_width - margin) + slack;
     std::vector<double> weight(study.bins.count, 0.0);
     for (int bin = 0; bin < study.bins.count; ++bin) {
+        if (!judged_bin(study, bin)) continue;
         const double y = study.bins.low(bin);
-        if (y >= low && y + study.bins.width <= high)
-            weight[bin] = mean_weight(study.target, y, y + study.bins.width);
+        weight[bin] =
+            study.target.is_field()
+                ? study.target
+                      .weight_over(study.footprint.x_low, study.footprint.x_high, y, y + study.bins.width)
+                      .mean
+                : mean_weight(study.target, y, y + study.bins.width);
     }
     return weight;
 }
 
 std::vector<double> bin_targets(const Study& study) {
-    std::vector<double> target(study.bins.count);
-    for (int bin = 0; bin < study.bins.count; ++bin)
-        target[bin] = study.target.bin_mean(study.bins.low(bin), study.bins.low(bin) + study.bins.width);
+    return targets_over(study, study.footprint.x_low, study.footprint.x_high);
+}
+
+std::vector<double> field_targets(const Study& study) {
+    std::vector<double> target;
+    if (!study.target.is_field()) return target;
+    for (int column = 0; column < study.columns; ++column) {
+        const auto [low, high] = column_of(study, column);
+        const std::vector<double> of_column = targets_over(study, low, high);
+        target.insert(target.end(), of_column.begin(), of_column.end());
+    }
     return target;
+}
+
+std::vector<double> field_weights(const Study& study) {
+    std::vector<double> weight;
+    if (!study.target.is_field()) return weight;
+    for (int column = 0; column < study.columns; ++column) {
+        const auto [low, high] = column_of(study, column);
+        for (int bin = 0; bin < study.bins.count; ++bin) {
+            const double y = study.bins.low(bin);
+            weight.push_back(judged_bin(study, bin)
+                                 ? study.target.weight_over(low, high, y, y + study.bins.width).mean
+                                 : 0);
+        }
+    }
+    return weight;
+}
+
+std::vector<double> drift_targets(const Study& study) {
+    std::vector<double> change(study.bins.count, 0.0);
+    if (!study.target.is_field()) return change;
+    const double low = study.footprint.x_low, high = study.footprint.x_high, third = (high - low) / 3;
+    const std::vector<double> first = targets_over(study, low, low + third);
+    change = targets_over(study, high - third, high);
+    for (int bin = 0; bin < study.bins.count; ++bin) change[bin] -= first[bin];
+    return change;
+}
+
+std::vector<double> drift_weights(const Study& study) {
+    std::vector<double> weight = bin_weights(study);
+    const double low = study.footprint.x_low, high = study.footprint.x_high, third = (high - low) / 3;
+    for (int bin = 0; bin < study.bins.count; ++bin) {
+        if (!(weight[bin] > 0)) continue;
+        weight[bin] = 1;  // physics.md 5: rms over y, unweighted, over the bins that count
+        if (!study.target.is_field()) continue;
+        const double y = study.bins.low(bin), y_high = y + study.bins.width;
+        const double least = std::min(study.target.weight_over(low, low + third, y, y_high).least,
+                                      study.target.weight_over(high - third, high, y, y_high).least);
+        weight[bin] = least > 0 ? 1 : 0;
+    }
+    return weight;
 }
 
 void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio) {
     for (double& s : evaluation.profile.standard_error) s *= std::sqrt(variance_ratio.profile);
     for (double& s : evaluation.drift.standard_error) s *= std::sqrt(variance_ratio.drift);
     evaluation.drift.noise_floor *= std::sqrt(variance_ratio.drift);
+    const double columns = std::max<double>(1, static_cast<double>(evaluation.field.x_m.size()));
+    for (double& s : evaluation.field.cells.standard_error)
+        s *= std::sqrt(1 + (variance_ratio.profile - 1) / columns);
 }
 
 void judge(const Study& study, Evaluation& evaluation) {
     const Objective& objective = study.objective;
     evaluation.target = bin_targets(study);
     evaluation.weight = bin_weights(study);
+    evaluation.field_target = field_targets(study);
+    evaluation.field_weight = field_weights(study);
     evaluation.residuals.clear();
     evaluation.objective = kNotEvaluable;
     if (!evaluation.health.ok()) return;
@@ -100,20 +180,26 @@ void judge(const Study& study, Evaluation& evaluation) {
     sized(evaluation.drift.difference, std::numeric_limits<double>::quiet_NaN());
     sized(evaluation.drift.standard_error, std::numeric_limits<double>::quiet_NaN());
 
+    GradationProfile& judged = evaluation.judged();
+    const std::vector<double>& weight = evaluation.judged_weight();
+    const std::vector<double>& target =
+        evaluation.field_target.empty() ? evaluation.target : evaluation.field_target;
+    judged.gi.resize(target.size(), std::numeric_limits<double>::quiet_NaN());
+    judged.standard_error.resize(target.size(), std::numeric_limits<double>::quiet_NaN());
+
     double weight_sum = 0;
     int counting = 0, counting_drift = 0, wanted = 0;
-    std::vector<double> drift_weight(bins, 0.0);
-    for (std::size_t b = 0; b < bins; ++b) {
-        if (!(evaluation.weight[b] > 0)) continue;
+    for (std::size_t b = 0; b < target.size(); ++b) {
+        if (!(weight[b] > 0)) continue;
         ++wanted;
-        if (std::isfinite(evaluation.profile.gi[b])) {
-            ++counting;
-            weight_sum += evaluation.weight[b];
-        }
-        if (std::isfinite(evaluation.drift.difference[b])) {
-            ++counting_drift;
-            drift_weight[b] = 1;  // physics.md 5: rms over y, unweighted, over the bins that count
-        }
+        if (!std::isfinite(judged.gi[b])) continue;
+        ++counting;
+        weight_sum += weight[b];
+    }
+    std::vector<double> drift_weight = drift_weights(study);
+    for (std::size_t b = 0; b < bins; ++b) {
+        if (!std::isfinite(evaluation.drift.difference[b])) drift_weight[b] = 0;
+        counting_drift += drift_weight[b] > 0;
     }
     if (counting == 0) {
         evaluation.health.status = "no_bins";
@@ -125,14 +211,13 @@ void judge(const Study& study, Evaluation& evaluation) {
         return;
     }
 
-    evaluation.misfit =
-        misfit(objective.norm, evaluation.profile.gi, evaluation.target, evaluation.weight,
-               evaluation.profile.standard_error, objective.tolerance, evaluation.profile.degrees);
-    const std::vector<double> no_drift(bins, 0.0);
+    evaluation.misfit = misfit(objective.norm, judged.gi, target, weight, judged.standard_error,
+                               objective.tolerance, judged.degrees);
+    const std::vector<double> drift_target = drift_targets(study);
     double drift = 0;
     if (counting_drift > 0) {
         evaluation.drift_misfit =
-            misfit(Norm::rmse, evaluation.drift.difference, no_drift, drift_weight,
+            misfit(Norm::rmse, evaluation.drift.difference, drift_target, drift_weight,
                    evaluation.drift.standard_error, objective.x_drift_tolerance, evaluation.drift.degrees);
         drift = evaluation.drift_misfit.value;
         // The same bins everywhere: the number beside the misfit is the number the verdict is about.
@@ -145,14 +230,13 @@ void judge(const Study& study, Evaluation& evaluation) {
         widen_as_one(evaluation.drift_misfit, evaluation.drift.degrees);
     }
 
-    for (std::size_t b = 0; b < bins; ++b)
-        if (evaluation.weight[b] > 0 && std::isfinite(evaluation.profile.gi[b]))
-            evaluation.residuals.push_back(std::sqrt(evaluation.weight[b] / weight_sum) *
-                                           (evaluation.profile.gi[b] - evaluation.target[b]));
+    for (std::size_t b = 0; b < target.size(); ++b)
+        if (weight[b] > 0 && std::isfinite(judged.gi[b]))
+            evaluation.residuals.push_back(std::sqrt(weight[b] / weight_sum) * (judged.gi[b] - target[b]));
     for (std::size_t b = 0; b < bins; ++b)
         if (drift_weight[b] > 0)
             evaluation.residuals.push_back(std::sqrt(objective.x_drift_weight / counting_drift) *
-                                           evaluation.drift.difference[b]);
+                                           (evaluation.drift.difference[b] - drift_target[b]));
 
     const double value = evaluation.misfit.value;
     // Empty bins leave the norm; they must not become a way to a better objective.

@@ -41,8 +41,12 @@ struct Evaluation {
     XDrift plain_check_drift;            ///< and their drift
     bool one_error = false;              ///< one error moves all bins: an extrapolation (heap_order.h)
     bool every_grain = false;            ///< full only: every grain told of every y (dem_evaluator.h)
-    std::vector<double> target, weight;  ///< per bin
-    Misfit misfit, drift_misfit;
+    std::vector<double> target, weight;  ///< per bin; of a field its means along x
+    // a target over x and y only, else empty: what is judged then, cell by cell as in GradationField
+    GradationField field;
+    std::vector<double> field_target, field_weight;
+    Misfit misfit;        ///< of the profile; of the field where one is asked for
+    Misfit drift_misfit;  ///< of what the target does not ask to change along x (drift_targets)
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0;
     double waste_a_share = 0;  ///< A's share of the overflow [-]
     double objective = 0;      ///< what a search minimises
@@ -60,6 +64,11 @@ struct Evaluation {
     std::string state_hash;
     std::vector<double>
         residuals;  ///< sqrt(w) (gi - g) per counting bin, then sqrt(x_drift_weight) drift per bin
+
+    /// What the verdict is about: the profile's bins, or the field's cells.
+    const GradationProfile& judged() const { return field_target.empty() ? profile : field.cells; }
+    GradationProfile& judged() { return field_target.empty() ? profile : field.cells; }
+    const std::vector<double>& judged_weight() const { return field_target.empty() ? weight : field_weight; }
 };
 
 /// Design -> Evaluation. "Not evaluable" is a status in `health`.
@@ -76,8 +85,20 @@ Footprint footprint_of(const Study& study, const Design& design);
 /// Weight per bin: mean of the target's zones over the bin; 0 outside the footprint and within 2 D90 of a
 /// side (wall or periodic seam).
 std::vector<double> bin_weights(const Study& study);
-/// Target per bin: mean of g over the bin [-].
+/// Target per bin: mean of g over the bin [-]; of a field over the footprint's x too.
 std::vector<double> bin_targets(const Study& study);
+
+/// A field's cells: study.columns equal parts of the footprint along x, the bins of each along y, in the
+/// order of GradationField. The field belongs to the part and is shifted with the footprint, so the cells'
+/// targets are the same for every design. Both empty for a target of y alone.
+std::vector<double> field_targets(const Study& study);
+std::vector<double> field_weights(const Study& study);
+/// What the target itself asks to change along x, per bin: its mean over the last third of the footprint
+/// minus that over the first [-]. The layer's drift is held against it; 0 for a target of y alone.
+std::vector<double> drift_targets(const Study& study);
+/// 1 for a bin whose drift is judged: one of weight > 0; of a field one that has no don't-care part in the
+/// first and the last third.
+std::vector<double> drift_weights(const Study& study);
 
 /// The grains of one bed share more than its blocks can tell: how this bed as a whole happened to turn over.
 /// Widens standard errors of profile and drift that were taken from blocks of single beds by the square root
@@ -87,10 +108,13 @@ struct BedAllowance {
     double profile, drift;  ///< what all grains of a bed share cancels in part in a difference along x
 };
 constexpr BedAllowance kBedsOverBlocksMap{3.5, 1.3}, kBedsOverBlocksPlain{2.3, 1.25};
+/// A field's cell has the blocks' variance of n columns over the whole's and shares with its row what the bed
+/// has in common: 1 + (profile - 1)/n of its blocks' variance.
 void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio);
 
 /// From run results to numbers, shared by every evaluator: fills target, weight, misfits, objective and
-/// residuals. objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0,
+/// residuals. A field is judged by its cells where the text says bins, its drift less what the target asks
+/// for. objective = sqrt(m^2 + x_drift_weight d^2) + waste_weight x waste_fraction + max(0,
 /// min_coverage - coverage) [GI units], m = raw misfit in the study's norm, d = rms x drift. Raw, not
 /// debiased: debiasing is flat at zero and stops a search there; the floor hardly changes between designs on
 /// one map. With `one_error` the

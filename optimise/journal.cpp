@@ -78,6 +78,11 @@ const auto profile_fields = [](auto io, auto& profile) {
     io("n_eff", profile.n_eff);
     io("degrees", profile.degrees);
 };
+const auto field_fields = [](auto io, auto& field) {
+    io("x_m", field.x_m);
+    io("y_m", field.y_m);
+    io.object("cells", field.cells, profile_fields);
+};
 const auto drift_fields = [](auto io, auto& drift) {
     io("difference", drift.difference);
     io("standard_error", drift.standard_error);
@@ -193,6 +198,13 @@ json to_json(const Evaluation& evaluation, const std::vector<Layer>& layers) {
     if (!evaluation.design.partition.second.empty())
         out["partition_points2_m"] = listed(evaluation.design.partition.second);
     evaluation_fields(Writer{out}, evaluation);
+    if (!evaluation.field_target.empty()) {  // the target is one over x and y
+        json field = json::object();
+        field_fields(Writer{field}, evaluation.field);
+        field["target"] = numbers(evaluation.field_target);
+        field["weight"] = numbers(evaluation.field_weight);
+        out["field"] = std::move(field);
+    }
     out["layers"] = json::array();
     for (const Layer& layer : layers) {
         json inner = json::object();
@@ -207,6 +219,11 @@ void from_json(const json& in, JournalEntry& entry) {
         throw std::runtime_error("written by another version of the journal");
     Evaluation& evaluation = entry.evaluation;
     evaluation_fields(Reader{in}, evaluation);
+    if (in.contains("field")) {
+        field_fields(Reader{in.at("field")}, evaluation.field);
+        evaluation.field_target = numbers(in.at("field").at("target"));
+        evaluation.field_weight = numbers(in.at("field").at("weight"));
+    }
     evaluation.fidelity = named(kFidelities, in.at("fidelity"));
     evaluation.misfit.norm = named(kNorms, in.at("norm"));
     const std::optional<Family> family = family_of(in.at("family").get<std::string>());

@@ -69,6 +69,23 @@ Evaluation KinematicEvaluator::evaluate(const Design& design, std::uint64_t seed
     evaluation.drift.standard_error.assign(bins.count, 0.0);
 
     chamber_fill(study_, design).apply(profile, evaluation.drift);
+    if (study_.target.is_field()) {
+        const Footprint footprint = footprint_of(study_, design);
+        GradationField& field = evaluation.field;
+        field.y_m = profile.y_m;
+        for (int column = 0; column < study_.columns; ++column) {
+            field.x_m.push_back(footprint.x_low +
+                                (column + 0.5) / study_.columns * (footprint.x_high - footprint.x_low));
+            const auto add = [](std::vector<double>& cells, const std::vector<double>& bins) {
+                cells.insert(cells.end(), bins.begin(), bins.end());
+            };
+            add(field.cells.y_m, profile.y_m);
+            add(field.cells.gi, profile.gi);
+            add(field.cells.standard_error, profile.standard_error);
+            add(field.cells.volume, profile.volume);
+            add(field.cells.n_eff, profile.n_eff);
+        }
+    }
     if (capture_fraction_) evaluation.capture_fraction = *capture_fraction_;
     evaluation.kinematic_error_bound = capture_fraction_ ? 1 - *capture_fraction_ : 1;
     judge(study_, evaluation);

@@ -299,10 +299,14 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high, map.share);
         evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
         evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
+        if (study_.target.is_field())
+            evaluation.field =
+                homogeneous_field(grains, design.partition, study_.bins, study_.columns, options);
         if (!grains.replicates()) allow_for_beds(evaluation, kBedsOverBlocksMap);
         if (map.heap) carry_extrapolation(*map.heap, evaluation);
         const ChamberFill fill = chamber_fill(study_, design);
         fill.apply(evaluation.profile, evaluation.drift);
+        fill.apply(evaluation.field.cells);
         Footprint in_strip = footprint;
         in_strip.y_low = 0;
         for (std::size_t l = 0; l < map.layers.size(); ++l) {

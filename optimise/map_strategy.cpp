@@ -22,7 +22,8 @@ constexpr double kSignificance = 0.05;  // of the equality test that calls for a
 /// worth more than a second look at it.
 constexpr double kBorderline = 0.75;
 
-/// What the confirmations have taught: confirmed - map, smoothed, per bin.
+/// What the confirmations have taught: confirmed - map, smoothed; per bin, or cell of a field, and the
+/// drift's per bin.
 struct Correction {
     std::vector<double> profile, drift;
     std::vector<double> variance, drift_variance;  ///< of those
@@ -31,14 +32,14 @@ struct Correction {
 
 /// Variance of a smoothed discrepancy: mean of up to three independent bins.
 std::vector<double> smoothed_variance(const std::vector<double>& standard_error,
-                                      const std::vector<double>& weight) {
+                                      const std::vector<double>& weight, int run) {
     const int bins = int(weight.size());
     std::vector<double> variance(bins, 0.0);
     for (int b = 0; b < bins; ++b) {
         double sum = 0;
         int n = 0;
         for (int k = std::max(0, b - 1); k <= std::min(bins - 1, b + 1); ++k)
-            if (weight[k] > 0 && std::isfinite(standard_error[k])) {
+            if (k / run == b / run && weight[k] > 0 && std::isfinite(standard_error[k])) {
                 sum += standard_error[k] * standard_error[k];
                 ++n;
             }
@@ -135,11 +136,12 @@ class MapStrategy {
         options.seed = study_.seed;
         options.stop = [this] { return run_.runner.stopped(); };
         FitProblem problem(study_, motion_, run_.map.map_of(motion_).layers);
-        if (correction.active)
-            for (std::size_t b = 0; b < problem.target.size(); ++b) {
+        if (correction.active) {
+            for (std::size_t b = 0; b < problem.target.size(); ++b)
                 problem.target[b] -= correction.profile[b];
+            for (std::size_t b = 0; b < problem.drift_target.size(); ++b)
                 problem.drift_target[b] -= correction.drift[b];
-            }
+        }
         const auto distance = [this](const FitResult& fit) {
             return std::max(fit.misfit / study_.objective.tolerance,
                             fit.drift / study_.objective.x_drift_tolerance);
@@ -173,10 +175,10 @@ class MapStrategy {
     double upper_bound(Evaluation expected, const Correction& correction) const {
         if (!expected.health.ok()) return std::numeric_limits<double>::infinity();
         if (correction.active) {
-            for (std::size_t b = 0; b < correction.profile.size(); ++b) {
-                expected.profile.gi[b] += correction.profile[b];
+            for (std::size_t b = 0; b < correction.profile.size(); ++b)
+                expected.judged().gi[b] += correction.profile[b];
+            for (std::size_t b = 0; b < correction.drift.size(); ++b)
                 expected.drift.difference[b] += correction.drift[b];
-            }
             judge(study_, expected);
         }
         return std::max(expected.misfit.interval_high / study_.objective.tolerance,
@@ -234,26 +236,34 @@ class MapStrategy {
                 run_.map.learn(motion_, round.layers[k], round.confirmations.at(k).state_hash);
             return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};
         }
-        const std::vector<double>& weight = run_.result.weight;
+        const std::vector<double> weight = round.predicted.judged_weight();
+        const std::vector<double> drift_weight = drift_weights(study_);
+        const int run = study_.bins.count;
         if (!correction_.active) {
             correction_.profile.assign(weight.size(), 0.0);
-            correction_.drift = correction_.variance = correction_.drift_variance = correction_.profile;
+            correction_.variance = correction_.profile;
+            correction_.drift.assign(drift_weight.size(), 0.0);
+            correction_.drift_variance = correction_.drift;
             correction_.active = true;
         }
         if (profile) {
-            correction_.profile = smoothed_discrepancy(round.mean.gi, round.predicted.profile.gi, weight);
-            correction_.variance = smoothed_variance(round.mean.standard_error, weight);
+            const GradationProfile& confirmed = study_.target.is_field() ? round.field.cells : round.mean;
+            correction_.profile =
+                smoothed_discrepancy(confirmed.gi, round.predicted.judged().gi, weight, run);
+            correction_.variance = smoothed_variance(confirmed.standard_error, weight, run);
         }
         if (drift) {
-            correction_.drift =
-                smoothed_discrepancy(round.drift.difference, round.predicted.drift.difference, weight);
-            correction_.drift_variance = smoothed_variance(round.drift.standard_error, weight);
+            correction_.drift = smoothed_discrepancy(round.drift.difference, round.predicted.drift.difference,
+                                                     drift_weight, run);
+            correction_.drift_variance = smoothed_variance(round.drift.standard_error, drift_weight, run);
         }
         if (!place_partition(correction_)) return {};
         ConfirmedDesign corrected = unconfirmed(predicted_);
         for (std::size_t b = 0; b < weight.size(); ++b) {
             corrected.expected[b] += correction_.profile[b];
             corrected.expected_variance[b] += correction_.variance[b];
+        }
+        for (std::size_t b = 0; b < drift_weight.size(); ++b) {
             corrected.expected_drift[b] += correction_.drift[b];
             corrected.expected_drift_variance[b] += correction_.drift_variance[b];
         }

@@ -12,7 +12,7 @@ namespace {
 
 /// full - map at one design, and what then still differs in the objective (coverage, waste).
 struct Discrepancy {
-    std::vector<double> profile, drift;  ///< per bin; empty = none
+    std::vector<double> profile, drift;  ///< per bin or cell, and per bin; empty = none
     double rest = 0;
 };
 
@@ -36,7 +36,7 @@ class CorrectedMap {
         const Evaluation map = map_.evaluate(task_.space.design(x), 0);
         discrepancy_ = {};
         if (!map.health.ok()) return;
-        discrepancy_.profile = difference(full.profile.gi, map.profile.gi);
+        discrepancy_.profile = difference(full.judged().gi, map.judged().gi);
         discrepancy_.drift = difference(full.drift.difference, map.drift.difference);
         discrepancy_.rest = full.objective - task_.space.unsound(x) - value(map, discrepancy_);
     }
@@ -44,8 +44,8 @@ class CorrectedMap {
   private:
     double value(Evaluation map, const Discrepancy& discrepancy) const {
         if (!map.health.ok()) return kNotEvaluable;
-        for (std::size_t b = 0; b < discrepancy.profile.size() && b < map.profile.gi.size(); ++b)
-            map.profile.gi[b] += discrepancy.profile[b];
+        for (std::size_t b = 0; b < discrepancy.profile.size() && b < map.judged().gi.size(); ++b)
+            map.judged().gi[b] += discrepancy.profile[b];
         for (std::size_t b = 0; b < discrepancy.drift.size() && b < map.drift.difference.size(); ++b)
             map.drift.difference[b] += discrepancy.drift[b];
         judge(study_, map);

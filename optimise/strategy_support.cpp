@@ -51,6 +51,8 @@ StrategyRun::StrategyRun(const Study& given, const RunOptions& options)
     result.warnings = study.warnings;
     result.target = bin_targets(study);
     result.weight = bin_weights(study);
+    result.field_target = field_targets(study);
+    result.field_weight = field_weights(study);
     result.threads = options.threads > 0 ? options.threads : omp_get_max_threads();
     result.host_cores = int(std::thread::hardware_concurrency());
     result.host_isa = instruction_set();
@@ -193,6 +195,7 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
             result.superseded.insert(result.superseded.end(), other.confirmations.begin(),
                                      other.confirmations.end());
     result.confirmed = round.mean;
+    result.confirmed_field = round.field;
     result.confirmed_drift = round.drift;
     result.misfit = round.misfit;
     result.drift_misfit = round.drift_misfit;
@@ -242,8 +245,11 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
     if (round.verdict == Verdict::met) {
         result.message = "Target met: " + numbers + ".";
     } else if (round.verdict == Verdict::not_met) {
-        result.message =
-            fmt::format("Target not met by its {}: {}.", drift_decides ? "x drift" : "profile", numbers);
+        result.message = fmt::format("Target not met by its {}: {}.",
+                                     drift_decides             ? "x drift"
+                                     : study.target.is_field() ? "field"
+                                                               : "profile",
+                                     numbers);
     } else {
         const Misfit& open =
             verdict_of(round.misfit) == Verdict::undecided ? round.misfit : round.drift_misfit;

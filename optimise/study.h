@@ -141,6 +141,7 @@ struct Study {
     Target target;
     Footprint footprint;  ///< default: the whole platform
     BinGrid bins;         ///< default 0.2 mm over the width
+    int columns = 3;      ///< a field is judged over this many equal parts of the footprint along x
     DesignSpace design_space;
     Objective objective;
     std::uint64_t seed = 1;

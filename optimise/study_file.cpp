@@ -251,6 +251,11 @@ void read_scale_up(TomlReader& reader, Section& root, Study& study) {
             reader.conflict({i == 0 ? "design_space.dose.A" : "design_space.dose.B"},
                             "must be 1 beside [scale_up]: an extrapolated machine has one dispenser floor",
                             "leave design_space.dose out");
+    if (study.target.is_field())
+        reader.conflict(
+            {"target.shape"},
+            "\"field\" has no place beside [scale_up]: an extrapolated machine has no cells along x",
+            "ask for a gradation over y, or leave [scale_up] out");
     study.scale_up = {lengths, dosages};
     // what the law is fitted to is not a search that could be cut short
     const auto plan = scale_up_plan(study, own);

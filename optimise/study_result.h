@@ -31,6 +31,9 @@ struct StudyResult {
     std::vector<Evaluation> confirmations;  ///< labelled full-width spreads on unseen packing seeds
     GradationProfile confirmed;             ///< mean of the confirmations, with band
     XDrift confirmed_drift;
+    /// A target over x and y: mean field of the confirmations, and what was asked of its cells; else empty.
+    GradationField confirmed_field;
+    std::vector<double> field_target, field_weight;
     std::vector<double> target, weight, band_low,
         band_high;                       ///< per bin; simultaneous 95 % band of the confirmed profile
     std::optional<Evaluation> straight;  ///< the best straight partition on the same map: stated comparison

@@ -27,13 +27,14 @@ const std::vector<std::pair<std::string, std::string>> kShapeKeys = {{"from", "l
                                                                      {"gi_low", "sigmoid, step"},
                                                                      {"gi_high", "sigmoid, step"},
                                                                      {"y", "step"},
-                                                                     {"file", "table"},
+                                                                     {"file", "table, field"},
+                                                                     {"x_bin_width", "field"},
                                                                      {"levels", "plateaus"},
                                                                      {"gi_outer", "aba"},
                                                                      {"gi_inner", "aba"},
                                                                      {"ramp_in", "aba"},
                                                                      {"ramp_out", "aba"}};
-const std::vector<std::string> kShapes = {"linear", "sigmoid", "step", "table", "plateaus", "aba"};
+const std::vector<std::string> kShapes = {"linear", "sigmoid", "step", "table", "plateaus", "aba", "field"};
 const char* const kLevelsExample =
     "levels = [{ gi = 0.0, to = \"0.4 mm\" }, { gi = 0.5, from = \"0.7 mm\", to = \"0.9 mm\" }, "
     "{ gi = 1.0, from = \"1.2 mm\" }]";
@@ -52,7 +53,8 @@ std::pair<double, double> end_of_ramp(Section& target, const std::string& key, d
     return {y, value};
 }
 
-void read_zones(TomlReader& reader, Section& target, Study& study) {
+/// `field`: the shape asked for, whether its file could be read or not.
+void read_zones(TomlReader& reader, Section& target, Study& study, bool field) {
     const TomlReader::Found found = target.find("zones");
     if (!found.node) {
         reader.record({"target.zones", "none", "", "default", "every bin weighs 1"});
@@ -80,11 +82,27 @@ void read_zones(TomlReader& reader, Section& target, Study& study) {
         read.y_low =
             zone.quantity("from", "length", required("where the zone begins"), Range::between(-10, 10));
         read.y_high = zone.quantity("to", "length", required("where the zone ends"), Range::between(-10, 10));
+        if (field) {
+            const Default edge_low = {read.x_low, "from the footprint's near end"},
+                          edge_high = {read.x_high, "to its far end"};
+            if (zone.has("x_from"))
+                read.x_low = zone.quantity("x_from", "length", edge_low, Range::between(-10, 10));
+            if (zone.has("x_to"))
+                read.x_high = zone.quantity("x_to", "length", edge_high, Range::between(-10, 10));
+        } else {
+            for (const char* key : {"x_from", "x_to"})
+                zone.refuse(key, "has no place in a target of y alone",
+                            "leave it out, or ask for a gradation over x and y with shape = \"field\"");
+        }
+        zone.know("x_from");
+        zone.know("x_to");
         read.weight =
             zone.number("weight", {0, "a zone without a weight is don't-care"}, Range::between(0, 1e6));
         zone.finish();
         if (reader.sound({target.path(key)}) && !(read.y_low < read.y_high))
             target.problem(at, key, "must have from < to", "swap the two");
+        if (reader.sound({target.path(key)}) && !(read.x_low < read.x_high))
+            target.problem(at, key, "must have x_from < x_to", "swap the two");
         study.target.zones.push_back(read);
     }
 }
@@ -213,12 +231,13 @@ void read_layer(TomlReader& reader, Section& target, Study& study) {
     }
 }
 
-void read_shape(TomlReader& reader, Section& target, Study& study) {
+/// Returns the shape's name; empty when there is none that is known.
+std::string read_shape(TomlReader& reader, Section& target, Study& study) {
     if (!target.has("shape")) {
         target.know("shape");
         target.missing("shape", fmt::format("write shape = \"linear\", or one of {}", joined(kShapes)));
         for (const auto& [key, shapes] : kShapeKeys) target.know(key);
-        return;
+        return {};
     }
     const std::string shape = target.choice("shape", kShapes, "", "");
     for (const auto& [key, shapes] : kShapeKeys) {
@@ -228,7 +247,7 @@ void read_shape(TomlReader& reader, Section& target, Study& study) {
             target.refuse(key, fmt::format("has no place in shape = \"{}\"", shape),
                           fmt::format("leave it out, or choose a shape that has it: {}", shapes));
     }
-    if (shape.empty()) return;
+    if (shape.empty()) return shape;
     const Range gi = Range::between(0, 1);
     if (shape == "linear") {
         auto [y0, gi0] = end_of_ramp(target, "from", 0);
@@ -264,22 +283,45 @@ void read_shape(TomlReader& reader, Section& target, Study& study) {
     } else {
         if (!target.has("file")) {
             target.know("file");
-            target.missing(
-                "file",
-                "name a CSV file with the columns y_mm, gi and, where wanted, weight, relative to the study");
-            return;
+            target.missing("file", fmt::format("name a CSV file with the columns {}y_mm, gi and, where "
+                                               "wanted, weight, relative to the study",
+                                               shape == "field" ? "x_mm, " : ""));
+            return shape;
         }
         const TomlReader::Found found = target.find("file");
         const std::string file = target.text("file", "", "");
-        if (file.empty()) return;
+        if (file.empty()) return shape;
         const std::filesystem::path path = std::filesystem::path(reader.file()).parent_path() / file;
         try {
-            study.target = table_target(path.string());
+            study.target = shape == "field" ? field_target(path.string()) : table_target(path.string());
             study.target.table_file = file;
         } catch (const std::runtime_error& error) {
             target.problem(found, "file", error.what(), "mend the table or name another file");
         }
     }
+    return shape;
+}
+
+/// The cells of a field along x; its mean over them is what a profile is held against.
+void read_columns(TomlReader& reader, Section& target, Study& study) {
+    const double low = study.footprint.x_low, length = study.footprint.x_high - low;
+    const double width =
+        target.quantity("x_bin_width", "length", {length / 3, "a third of the footprint, as the x drift"},
+                        Range::above_to(0, 10));
+    if (!study.target.is_field() || !reader.sound({"target.x_bin_width", "target.footprint.x"})) return;
+    study.target = study.target.over_x(low, study.footprint.x_high);
+    const double columns = length / width;
+    if (columns > 100) {
+        reader.conflict({"target.x_bin_width"},
+                        fmt::format("cuts the footprint, {} long, into more than 100 columns", mm(length)),
+                        "make it wider: a column narrower than a few grains shows grains, not a gradation");
+        return;
+    }
+    study.columns = std::max(1, static_cast<int>(std::lround(columns)));
+    if (std::abs(study.columns * width - length) > 1e-3 * length)  // 0.5333 mm is a third of 1.6 mm
+        study.warnings.push_back(fmt::format(
+            "the footprint, {} long, is no multiple of x_bin_width {}: {} columns of {} are judged",
+            mm(length), mm(width), study.columns, mm(length / study.columns)));
 }
 
 }  // namespace
@@ -292,8 +334,8 @@ void read_target(TomlReader& reader, Section& root, Study& study) {
             "say what is wanted: [target] shape = \"linear\", from = { y = \"0.4 mm\", gi = 0 }, to = ...");
         return;
     }
-    read_shape(reader, target, study);
-    read_zones(reader, target, study);
+    const bool field = read_shape(reader, target, study) == "field";
+    read_zones(reader, target, study, field);
     read_layer(reader, target, study);
 
     const double width = study.dispenser_width, length = study.scene.platform_length;
@@ -314,6 +356,8 @@ void read_target(TomlReader& reader, Section& root, Study& study) {
                        Range::between(0, 10));
     footprint.finish();
     study.footprint = {x.first, x.second, y.first, y.second};
+    if (field) read_columns(reader, target, study);
+    target.know("x_bin_width");
     target.finish();
 
     if (reader.sound({"target", "machine"})) {
@@ -349,9 +393,13 @@ void read_target(TomlReader& reader, Section& root, Study& study) {
         reader.conflict({"target.shape"}, rule, "change [target]");
     bool flat = true;
     constexpr int kSamples = 200;  // a level or a peak between the two ends counts too
-    for (int k = 1; k <= kSamples; ++k)
-        flat &= std::abs(study.target(y.first + k * (y.second - y.first) / kSamples) -
-                         study.target(y.first)) < 1e-6;
+    const int along = study.target.is_field() ? kSamples : 0;
+    for (int i = 0; i <= along; ++i) {
+        const double at_x = x.first + (along > 0 ? i * (x.second - x.first) / along : 0);
+        for (int k = 0; k <= kSamples; ++k)
+            flat &= std::abs(study.target.at(at_x, y.first + k * (y.second - y.first) / kSamples) -
+                             study.target.at(x.first, y.first)) < 1e-6;
+    }
     if (flat)
         study.warnings.push_back(
             "the target is the same everywhere in the footprint: no gradation is asked for");

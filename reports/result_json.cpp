@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "optimise/chamber_fill.h"
+#include "reports/field_json.h"
 #include "reports/json_support.h"
 #include "reports/layers_json.h"
 #include "reports/provenance.h"
@@ -282,6 +283,7 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
         number(proved ? result.confirmed_drift.noise_floor : result.predicted.drift.noise_floor);
     drift["tolerance"] = number(study.objective.x_drift_tolerance);
     drift["profile"] = drift_profile_json(proved ? result.confirmed_drift : result.predicted.drift);
+    if (study.target.is_field()) drift["profile"]["target"] = numbers(drift_targets(study));
     if (result.extrapolated)  // one error moves all bins
         drift["profile"]["band_factor"] = number(common_factor(result.predicted.drift.degrees));
     drift["of"] = proved ? "confirmed" : "predicted";
@@ -303,46 +305,49 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
     provenance["host"] = {
         {"isa", result.host_isa}, {"cores", result.host_cores}, {"threads", result.threads}};
     const bool failed = result.termination == "failed" || result.termination == "not_run";
-    return {{"study", study.name},
-            {"study_file", study.file},
-            {"machine", study.machine_name},
-            {"target", study.target.describe()},
-            {"termination", result.termination},
-            {"message", result.message},
-            {"verdict", to_string(result.verdict)},
-            {"target_met", result.verdict == Verdict::met && !failed},
-            {"verdict_text", words.verdict},
-            {"misfit", misfit},
-            {"x_drift", drift},
-            {"capture_fraction", found(result.capture_fraction)},
-            {"supply_ratio", found(result.supply_ratio)},
-            {"design", design_json(study, result.design)},
-            {"profile", profile_json(study, result)},
-            {"judged_layer", judged_layer_json(study)},
-            {"layers", layers_json(study, result)},
-            {"coverage", found(result.coverage)},
-            {"waste_fraction", found(result.waste_fraction)},
-            {"waste_a_share", found(result.confirmations.empty() ? kUndefined : result.waste_a_share)},
-            {"packing_fraction", found(result.packing_fraction)},
-            {"spreads", {{"map", result.spreads_map}, {"full", result.spreads_full}}},
-            {"predicted", evaluation_summary(study, result.predicted)},
-            {"confirmations", confirmations},
-            {"straight", result.straight ? evaluation_summary(study, *result.straight) : json(nullptr)},
-            {"powder_gate", gate_json(result.powder_gate)},
-            {"extrapolated", extrapolated_json(result.extrapolated)},
-            {"kinematic", result.kinematic ? evaluation_summary(study, *result.kinematic) : json(nullptr)},
-            {"beds", beds_json(result)},
-            {"history", history_json(result)},
-            {"given_used", pairs_json(result.given_used)},
-            {"reductions", study.reductions},
-            {"inputs", inputs_json(study)},
-            {"warnings", words.warnings},
-            {"stage_seconds", stages},
-            {"seconds", number(result.seconds)},
-            {"seconds_cold", number(result.seconds_cold)},
-            {"seed", result.seed},
-            {"provenance", provenance},
-            {"files", files}};
+    json object = {
+        {"study", study.name},
+        {"study_file", study.file},
+        {"machine", study.machine_name},
+        {"target", study.target.describe()},
+        {"termination", result.termination},
+        {"message", result.message},
+        {"verdict", to_string(result.verdict)},
+        {"target_met", result.verdict == Verdict::met && !failed},
+        {"verdict_text", words.verdict},
+        {"misfit", misfit},
+        {"x_drift", drift},
+        {"capture_fraction", found(result.capture_fraction)},
+        {"supply_ratio", found(result.supply_ratio)},
+        {"design", design_json(study, result.design)},
+        {"profile", profile_json(study, result)},
+        {"judged_layer", judged_layer_json(study)},
+        {"layers", layers_json(study, result)},
+        {"coverage", found(result.coverage)},
+        {"waste_fraction", found(result.waste_fraction)},
+        {"waste_a_share", found(result.confirmations.empty() ? kUndefined : result.waste_a_share)},
+        {"packing_fraction", found(result.packing_fraction)},
+        {"spreads", {{"map", result.spreads_map}, {"full", result.spreads_full}}},
+        {"predicted", evaluation_summary(study, result.predicted)},
+        {"confirmations", confirmations},
+        {"straight", result.straight ? evaluation_summary(study, *result.straight) : json(nullptr)},
+        {"powder_gate", gate_json(result.powder_gate)},
+        {"extrapolated", extrapolated_json(result.extrapolated)},
+        {"kinematic", result.kinematic ? evaluation_summary(study, *result.kinematic) : json(nullptr)},
+        {"beds", beds_json(result)},
+        {"history", history_json(result)},
+        {"given_used", pairs_json(result.given_used)},
+        {"reductions", study.reductions},
+        {"inputs", inputs_json(study)},
+        {"warnings", words.warnings},
+        {"stage_seconds", stages},
+        {"seconds", number(result.seconds)},
+        {"seconds_cold", number(result.seconds_cold)},
+        {"seed", result.seed},
+        {"provenance", provenance},
+        {"files", files}};
+    if (const json field = field_json(result); !field.is_null()) object["field"] = field;
+    return object;
 }
 
 json evaluation_json(const Study& study, const Evaluation& evaluation,
@@ -357,6 +362,7 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
     drift["noise_floor"] = number(evaluation.drift.noise_floor);
     drift["tolerance"] = number(study.objective.x_drift_tolerance);
     drift["profile"] = drift_profile_json(evaluation.drift);
+    if (study.target.is_field()) drift["profile"]["target"] = numbers(drift_targets(study));
     json map = {{"x_m", numbers(evaluation.map.x_m)},
                 {"y_m", numbers(evaluation.map.y_m)},
                 {"gi", grid(evaluation.map.gi, evaluation.map.x_m.size())},
@@ -376,6 +382,7 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
     object["map"] = map;
     object["judged_layer"] = judged_layer_json(study);
     object["layers"] = layers_json(study, evaluation);
+    if (const json field = field_json(evaluation); !field.is_null()) object["field"] = field;
     if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
     object["x_drift"] = drift;
     // a strip's grains carry no powder

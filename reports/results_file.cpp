@@ -270,6 +270,30 @@ void write_history(Table& table, H5Writer& file, const StudyResult& result, cons
     file.attach_scale("/history/x", "/variables/name", 1);
 }
 
+/// /field: cells of a target over x and y, [x][y]; nothing for a target of y alone.
+void write_field(Table& table, H5Writer& file, const StudyResult& result) {
+    const GradationField& predicted = result.predicted.field;
+    if (result.field_target.empty() || predicted.x_m.empty()) return;
+    const std::size_t columns = predicted.x_m.size(), rows = predicted.y_m.size();
+    table.numbers("/field/x_m", predicted.x_m, "m", "centres of the columns, from the platform's near edge");
+    table.numbers("/field/y_m", predicted.y_m, "m", "centres of the bins");
+    const struct {
+        const char *name, *long_name;
+        const std::vector<double>& values;
+    } grids[] = {{"target", "GI(x, y) asked for, cell mean", result.field_target},
+                 {"weight", "weight of the cell in the misfit", result.field_weight},
+                 {"predicted", "GI(x, y) on the origin map, hard labels", predicted.cells.gi},
+                 {"predicted_standard_error", "standard error of it", predicted.cells.standard_error},
+                 {"confirmed", "GI(x, y), mean of the confirming spreads", result.confirmed_field.cells.gi},
+                 {"standard_error", "standard error of it", result.confirmed_field.cells.standard_error}};
+    for (const auto& grid : grids) {
+        const std::string name = std::string("/field/") + grid.name;
+        table.grid(name, padded(grid.values, columns * rows), {columns, rows}, "1", grid.long_name);
+        file.attach_scale(name, "/field/x_m", 0);
+        file.attach_scale(name, "/field/y_m", 1);
+    }
+}
+
 void write_result(Table& table, H5Writer& file, const Study& study, const StudyResult& result,
                   std::size_t bins) {
     const std::string root = "/result/";
@@ -292,6 +316,7 @@ void write_result(Table& table, H5Writer& file, const Study& study, const StudyR
         table.numbers(root + profile.name, padded(profile.values, bins), "1", profile.long_name);
         file.attach_scale(root + profile.name, "/bins/y_m", 0);
     }
+    write_field(table, file, result);
     std::vector<double> points, inside, points2;
     for (const PlanPoint& p : result.design.partition.points) points.insert(points.end(), {p.x, p.y});
     for (const PlanPoint& p : result.design.partition.second) points2.insert(points2.end(), {p.x, p.y});

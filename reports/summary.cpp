@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/field_json.h"
 #include "reports/layers_json.h"
 #include "reports/result_json.h"
 #include "reports/wording.h"
@@ -91,6 +92,9 @@ std::string summary(const Study& study, const StudyResult& result, const std::st
         text += profile_table(result.predicted.profile, result.target, nullptr, result.band_low,
                               result.band_high, "predicted");
     if (study.scene.layers > 1) text += "\n" + layers_text(study, mean_layers(study, result));
+    if (!result.field_target.empty() && !result.predicted.field.x_m.empty())
+        text += "\n" + field_table(proved ? result.confirmed_field : result.predicted.field,
+                                   result.field_target, proved ? "confirmed" : "predicted");
     if (result.straight && result.straight->health.ok())
         text += fmt::format(
             "\n  straight  the best straight partition on the same map: misfit {:.3f}, x drift {:.3f}\n",
@@ -131,6 +135,8 @@ std::string evaluation_summary_text(const Study& study, const Evaluation& evalua
     const GradationProfile& profile = evaluation.profile;
     const Band band = simultaneous_band(profile.gi, profile.standard_error, profile.degrees);
     text += profile_table(profile, evaluation.target, nullptr, band.low, band.high, "GI");
+    if (!evaluation.field_target.empty())
+        text += field_table(evaluation.field, evaluation.field_target, "GI");
     text += fmt::format(
         "  misfit {:.3f} (floor {:.3f}), x drift {:.3f} (floor {:.3f}), captured {:.0f} %, supply ratio "
         "{:.2f}, coverage {:.0f} %\n",

@@ -260,21 +260,27 @@ Wording wording(const Study& study, const StudyResult& result) {
     words.warnings = study.warnings;
     words.warnings.insert(words.warnings.end(), result.warnings.begin(), result.warnings.end());
     const double drift = proved ? result.confirmed_drift.value : result.predicted.drift.value;
-    if (measured && drift > 0.1)  // physics.md 5: above 0.1 it stands on the first screen
+    if (!result.field_target.empty() && measured)
+        words.verdict +=
+            " Misfit over the cells of x and y; x drift is what changes along x beyond what the target asks "
+            "for.";
+    else if (measured && drift > 0.1)  // physics.md 5: above 0.1 it stands on the first screen
         words.warnings.push_back(
             fmt::format("x drift {:.3f}: the gradation changes along the spreading direction; the profile "
                         "averaged over x hides it",
                         drift));
     const ChamberFill fill = chamber_fill(study, result.design);
     if (measured && !fill.lasts()) {
-        std::vector<double> residual =
-            fill.levelled(proved ? result.confirmed.gi : result.predicted.profile.gi);
-        for (std::size_t b = 0; b < residual.size() && b < result.target.size(); ++b)
-            residual[b] -= result.target[b];
+        const bool field = !result.field_target.empty();
+        const GradationProfile& predicted = field ? result.predicted.field.cells : result.predicted.profile;
+        const GradationProfile& confirmed = field ? result.confirmed_field.cells : result.confirmed;
+        const std::vector<double>& target = field ? result.field_target : result.target;
+        std::vector<double> residual = fill.levelled(proved ? confirmed.gi : predicted.gi);
+        for (std::size_t b = 0; b < residual.size() && b < target.size(); ++b) residual[b] -= target[b];
         words.warnings.push_back(fmt::format(
             "the chambers are filled unequally, which acts in the first layer only: once they are level the "
             "same partition lays a {} of {} from the target, not {}",
-            name, gi_text(norm_of(result.misfit.norm, residual, result.weight)),
+            name, gi_text(norm_of(result.misfit.norm, residual, field ? result.field_weight : result.weight)),
             gi_text(result.misfit.value)));
     }
     std::vector<std::string> unique;

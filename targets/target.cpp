@@ -3,46 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include "targets/field_support.h"
+#include "targets/table_support.h"
 
 namespace gradwright {
 namespace {
 
-constexpr double kLargestWeight = 1e6;  // as for zones: beyond it the other bins might as well not be there
+using namespace tables;
 
 /// s of the logistic 1/(1 + exp(-(y - centre)/s)): it passes 0.1 and 0.9 at centre -+ s ln 9.
 double logistic_scale(double width_10_90) {
     return width_10_90 / (2 * std::log(9.0));
-}
-
-/// Piecewise linear through (y, gi), constant beyond the ends.
-double interpolate(const std::vector<double>& y, const std::vector<double>& gi, double at) {
-    if (at <= y.front()) return gi.front();
-    if (at >= y.back()) return gi.back();
-    const std::size_t k = std::upper_bound(y.begin(), y.end(), at) - y.begin();
-    return gi[k - 1] + (gi[k] - gi[k - 1]) * (at - y[k - 1]) / (y[k] - y[k - 1]);
-}
-
-/// Integral of the same from low to high: trapezia between the knots inside, exact.
-double integrate(const std::vector<double>& y, const std::vector<double>& gi, double low, double high) {
-    double sum = 0, at = low, value = interpolate(y, gi, low);
-    const auto advance = [&](double to) {
-        const double next = interpolate(y, gi, to);
-        sum += 0.5 * (value + next) * (to - at);
-        at = to;
-        value = next;
-    };
-    for (double knot : y) {
-        if (knot > low && knot < high) advance(knot);
-    }
-    advance(high);
-    return sum;
 }
 
 /// ln(1 + exp(t)) without overflow.
@@ -67,18 +44,6 @@ std::string levels_text(const std::vector<double>& y, const std::vector<double>&
     return text + ", straight between";
 }
 
-std::string trimmed(const std::string& text) {
-    const char* blank = " \t\r\n\"";
-    const std::size_t begin = text.find_first_not_of(blank);
-    return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(blank) - begin + 1);
-}
-
-bool to_number(const std::string& text, double& value) {
-    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-}
-
 }  // namespace
 
 double Target::operator()(double y) const {
@@ -92,6 +57,7 @@ double Target::operator()(double y) const {
         case TargetShape::table:
         case TargetShape::plateaus:
         case TargetShape::aba:
+        case TargetShape::field:
             return interpolate(table_y, table_gi, y);
     }
     return gi0;
@@ -119,6 +85,7 @@ double Target::bin_mean(double y_low, double y_high) const {
         case TargetShape::table:
         case TargetShape::plateaus:
         case TargetShape::aba:
+        case TargetShape::field:
             return integrate(table_y, table_gi, y_low, y_high) / width;
     }
     return gi0;
@@ -134,8 +101,9 @@ double Target::weight(double y) const {
 std::pair<double, double> Target::gi_range() const {
     if (shape == TargetShape::linear || shape == TargetShape::step || shape == TargetShape::sigmoid)
         return {std::min(gi0, gi1), std::max(gi0, gi1)};
-    if (table_gi.empty()) return {0, 0};
-    const auto [low, high] = std::minmax_element(table_gi.begin(), table_gi.end());
+    const std::vector<double>& all = is_field() ? field_gi : table_gi;
+    if (all.empty()) return {0, 0};
+    const auto [low, high] = std::minmax_element(all.begin(), all.end());
     return {*low, *high};
 }
 
@@ -169,6 +137,9 @@ std::string Target::describe() const {
             text = (table_gi.size() > 1 && table_gi[0] < table_gi[1] ? "B-A-B: " : "A-B-A: ") +
                    levels_text(table_y, table_gi);
             break;
+        case TargetShape::field:
+            text = field_text(*this);
+            break;
     }
     for (const TargetZone& zone : zones) {
         const bool below = std::isinf(zone.y_low), beyond = std::isinf(zone.y_high);
@@ -180,6 +151,8 @@ std::string Target::describe() const {
             text += fmt::format("; from {:g} mm on", zone.y_low * 1e3);
         else
             text += fmt::format("; {:g} to {:g} mm", zone.y_low * 1e3, zone.y_high * 1e3);
+        if (std::isfinite(zone.x_low) || std::isfinite(zone.x_high))
+            text += fmt::format(" where x = {:g} to {:g} mm", zone.x_low * 1e3, zone.x_high * 1e3);
         text += zone.weight == 0 ? std::string(" don't care") : fmt::format(" weight {:g}", zone.weight);
     }
     return text;
@@ -255,11 +228,7 @@ Target table_target(const std::string& csv_file) {
         if (number == 1 && line.starts_with("\xef\xbb\xbf"))
             line.erase(0, 3);  // byte order mark of spreadsheets
         if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
-        const char separator =
-            line.find(',') != std::string::npos ? ',' : (line.find(';') != std::string::npos ? ';' : '\t');
-        std::vector<std::string> cells;
-        std::istringstream split(line);
-        for (std::string cell; std::getline(split, cell, separator);) cells.push_back(trimmed(cell));
+        const std::vector<std::string> cells = cells_of(line);
         const auto fault = [&](const std::string& rule) {
             wrong += fmt::format("{}{}:{}: {}", wrong.empty() ? "" : "\n", csv_file, number, rule);
         };
@@ -271,9 +240,9 @@ Target table_target(const std::string& csv_file) {
                 const std::string& name = cells[c];
                 if (name == "gi") found_gi = c;
                 if (name == "weight") weight_column = c;
-                if (name == "y" || name == "y_m" || name == "y_mm" || name == "y_um") {
+                if (const double si = unit_of_column(name, "y"); si > 0) {
                     found_y = c;
-                    unit = name == "y_mm" ? 1e-3 : (name == "y_um" ? 1e-6 : 1);
+                    unit = si;
                 }
             }
             if (found_y < 0 || found_gi < 0) {
@@ -387,6 +356,9 @@ std::vector<std::string> problems(const Target& target) {
                 }
             }
             break;
+        case TargetShape::field:
+            for (const std::string& rule : field_problems(target)) found.push_back(rule);
+            break;
     }
     for (std::size_t k = 0; k < target.zones.size(); ++k) {
         const TargetZone& zone = target.zones[k];
@@ -394,6 +366,11 @@ std::vector<std::string> problems(const Target& target) {
             found.push_back(
                 fmt::format("zone {}: its end y = {:g} mm must be greater than its start y = {:g} mm", k + 1,
                             zone.y_high * 1e3, zone.y_low * 1e3));
+        }
+        if (!(zone.x_high > zone.x_low)) {
+            found.push_back(
+                fmt::format("zone {}: its end x = {:g} mm must be greater than its start x = {:g} mm", k + 1,
+                            zone.x_high * 1e3, zone.x_low * 1e3));
         }
         if (!(zone.weight >= 0) || !std::isfinite(zone.weight)) {
             found.push_back(

@@ -212,10 +212,40 @@
       ],
     });
   }
+  // A target over x and y: asked for, found, and the difference, one panel each, to scale.
+  const field = result.field;
+  function field_cells() {
+    const edges = (m, k, ends) => { const step = m.length > 1 ? m[1] - m[0] : ends; return [(m[k] - step / 2) * 1e3, (m[k] + step / 2) * 1e3]; };
+    const found = (j, i) => (field.of === "confirmed" ? field.confirmed[j][i] ?? field.left_out.confirmed[j][i] : field.predicted[j][i]);
+    return field.y_m.flatMap((y, j) => field.x_m.map((x, i) => {
+      const [x1, x2] = edges(field.x_m, i, plan.footprint[1] - plan.footprint[0]), [y1, y2] = edges(field.y_m, j, data.bin_width_m);
+      const asked = field.target[j][i] ?? field.left_out.target[j][i], got = found(j, i), counts = field.weight[j][i] > 0;
+      return { x1, x2, y1, y2, asked, got, counts, off: known(asked) && known(got) ? got - asked : null, band: [field.band_low[j][i], field.band_high[j][i]] };
+    }));
+  }
+  function field_figure(width) {
+    const cells = field_cells(), names = ["target", field.of, `${field.of} − target`], left = 44, right = 12, bottom = 42, top = 24;
+    const across = width > 620 ? 3 : 1, each = Math.floor(width / across);
+    const [x0, x1] = d3.extent(cells.flatMap((c) => [c.x1, c.x2])), y1 = d3.max(cells, (c) => c.y2);
+    const reach = Math.max(0.05, ...cells.filter((c) => c.counts && known(c.off)).map((c) => Math.abs(c.off)));
+    const colours = [gi_scale, gi_scale, { type: "linear", domain: [-reach, reach], interpolate: d3.scaleLinear([0, 0.5, 1], ["#8e0152", "#f7f7f7", "#276419"]).interpolate(d3.interpolateLab), label: "difference in GI", tickFormat: "+.2f" }];
+    const tip = (c) => `x ${c.x1.toFixed(2)} to ${c.x2.toFixed(2)} mm, y ${c.y1.toFixed(2)} to ${c.y2.toFixed(2)} mm\ntarget ${gi(c.asked)}\n${field.of} ${gi(c.got)}${known(c.band[0]) ? `\nband ${gi(c.band[0])} to ${gi(c.band[1])}` : ""}${c.counts ? "" : "\nleft out of the misfit"}`;
+    return h("div", { style: "display:flex;flex-wrap:wrap" }, ["asked", "got", "off"].map((key, k) => Plot.plot({
+      width: each, height: Math.max(180, Math.min(420, ((each - left - right) / (x1 - x0)) * y1)) + top + bottom, marginLeft: left, marginRight: right, marginTop: top, marginBottom: bottom, style,
+      x: { domain: [x0, x1], label: "x along the platform (mm)", ticks: 4 }, y: { domain: [0, y1], label: "y (mm)", ticks: 5 }, color: { ...colours[k], legend: true },
+      ariaLabel: names[k], ariaDescription: `${names[k]} over the cells of x and y`,
+      marks: [
+        Plot.rect(cells.filter((c) => known(c[key])), { x1: "x1", x2: "x2", y1: "y1", y2: "y2", fill: key, fillOpacity: (c) => (c.counts ? 1 : 0.35), inset: 0.5, title: tip }),
+        Plot.text(cells.filter((c) => known(c[key])), { x: (c) => (c.x1 + c.x2) / 2, y: (c) => (c.y1 + c.y2) / 2, text: (c) => (key === "off" ? d3.format("+.2f")(c[key]) : c[key].toFixed(2)), fontSize: 10, fill: (c) => (key !== "off" && Math.abs(c[key] - 0.5) > 0.42 ? "#fff" : "#222") }),
+        Plot.text([names[k]], { frameAnchor: "top", text: (d) => d, dy: -14, fontWeight: 600 }),
+      ],
+    })));
+  }
+  const field_rows = () => field_cells().map((c) => [`${c.x1.toFixed(2)} to ${c.x2.toFixed(2)}`, `${c.y1.toFixed(2)} to ${c.y2.toFixed(2)}`, gi(c.asked), gi(c.got), known(c.off) ? d3.format("+.3f")(c.off) : "–", known(c.band[0]) ? `${gi(c.band[0])} to ${gi(c.band[1])}` : "–", c.counts ? "" : "left out"]);
   function drift_figure(width) {
     const d = result.x_drift.profile, t = result.x_drift.tolerance;
     const rows = d.difference.map((v, b) => ({ y: (profile.y_m[b] ?? 0) * 1e3, v, e: (d.band_factor ?? 0) * (d.standard_error[b] ?? 0) })).filter((r) => known(r.v));
-    const reach = Math.max(1.6 * t, ...rows.map((r) => 1.08 * (Math.abs(r.v) + r.e)));
+    const reach = Math.max(1.6 * t, ...(d.target ?? []).map((v) => 1.2 * Math.abs(v ?? 0)), ...rows.map((r) => 1.08 * (Math.abs(r.v) + r.e)));
     return Plot.plot({
       width, height: Math.max(240, Math.min(360, width * 0.55)), marginLeft: 50, marginRight: 12, marginBottom: 42, style, grid: true,
       x: { domain: [0, y_end], label: "y across the spreading direction (mm)" }, y: { domain: [-reach, reach], label: "GI, last third − first third", tickFormat: "+.2f" },
@@ -223,6 +253,7 @@
         Plot.rect([0], { x1: 0, x2: y_end, y1: -t, y2: t, fill: green, fillOpacity: 0.09 }),
         Plot.ruleY([-t, t], { stroke: green, strokeDasharray: "5 4" }), Plot.ruleY([0], { stroke: "#555" }),
         Plot.ruleX(rows, { x: "y", y1: (r) => r.v - r.e, y2: (r) => r.v + r.e, stroke: "#333", strokeWidth: 1.4 }),
+        Plot.dot((d.target ?? []).map((v, b) => ({ y: (profile.y_m[b] ?? 0) * 1e3, v })).filter((r) => known(r.v)), { x: "y", y: "v", r: 5, stroke: green, fill: "#fff" }),
         Plot.dot(rows, { x: "y", y: "v", r: 4.5, fill: "#333", stroke: "#fff", title: (r) => `y ${r.y.toFixed(2)} mm: ${r.v.toFixed(3)} ± ${r.e.toFixed(3)}` }),
       ],
     });
@@ -249,8 +280,10 @@
 
   section("figures", "Gradation", h("div", { class: "grid" },
     figure("w12", "From the partition to the layer", "Plan view to scale: chambers A (blue) and B (orange) in the dispenser, the land that the blade crosses, and the GI of the layer on the platform. Dashed: the part's footprint, where everything is judged.", whole_plan),
-    bins.length ? figure("w6", "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : heap ? "Predicted by the longest strip's layer, stretched to the machine; boxes: the 95 % band with what the extrapolation carries. No bed of this size was spread." : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
-    bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third; the 95 % error bars hold for all bins together; shaded: tolerance (on the rms over the bins).", drift_figure) : null,
+    field ? figure("w12", `Target, ${field.of} and their difference over x and y`, "GI of the cells that the verdict is about: bins along y, equal parts of the footprint along x. Pale: cells left out of the misfit.", field_figure,
+      h("details", {}, h("summary", {}, "The numbers"), table(["x mm", "y mm", R("target"), R(field.of), R("difference"), R("band"), ""], field_rows()))) : null,
+    bins.length ? figure("w6", field ? "GI(y): means along x" : "Target, predicted and confirmed GI(y)", proved ? `Predicted: relabelled origin map. Confirmed: mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders; boxes: its 95 % band, simultaneous over the bins.${bins.some((b) => known(b.left)) ? ' Hollow grey: bins beside a wall or the periodic seam, left out of the misfit.' : ''}` : heap ? "Predicted by the longest strip's layer, stretched to the machine; boxes: the 95 % band with what the extrapolation carries. No bed of this size was spread." : "Predicted on the origin map only; no confirming spread was made.", profile_figure, profile_table) : null,
+    bins.length ? figure("w6", "x drift of each bin", "GI in the last third of the footprint minus the first third; the 95 % error bars hold for all bins together; shaded: tolerance (on the rms over the bins)." + (field ? " Hollow: what the target itself asks to change; the misfit is of the difference." : ""), drift_figure) : null,
     layers.length > 1 ? figure("w12", "GI(y) layer by layer", `The same partition, ${layers.length} doses and passes${proved ? `; mean of ${result.confirmations.length} spread${result.confirmations.length === 1 ? "" : "s"} with both powders` : "; predicted on the origin map"}. Judged: ${result.judged_layer === "all" ? "all layers pooled" : `layer ${result.judged_layer}`}.`, layers_figure, layers_table) : null,
     map ? figure("w6", "GI over the platform", `Cells of ${mm(map.x_m.length > 1 ? map.x_m[1] - map.x_m[0] : null)} mm, ${map.of}. Dashed: the part's footprint. Grey: no powder.`, map_figure) : null,
     origin ? figure("w6", "Where the powder comes from", `Share of the laid solid by place in the dispenser and on the platform (${origin.layers} map layer${origin.layers === 1 ? "" : "s"}). A layer that takes the same mixture of places at every x has no drift.${heap ? " Measured on the longest strip and stretched to the machine." : ""}`, origin_figure) : null,

@@ -424,7 +424,7 @@ TEST(Confirmation, three_replicates_give_the_error_of_their_mean) {
 
 TEST(Confirmation, discrepancy_is_the_mean_of_three_counting_neighbours) {
     const std::vector<double> weight = {0, 1, 1, 1, 0};
-    const std::vector<double> got = smoothed_discrepancy({9, 0.3, 0.6, 0.9, 9}, {0, 0, 0, 0, 0}, weight);
+    const std::vector<double> got = smoothed_discrepancy({9, 0.3, 0.6, 0.9, 9}, {0, 0, 0, 0, 0}, weight, 5);
     EXPECT_EQ(got[0], 0);
     EXPECT_NEAR(got[1], 0.45, 1e-12);
     EXPECT_NEAR(got[2], 0.6, 1e-12);
