@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -55,6 +56,7 @@ class MapStrategy {
 
     StudyResult run() {
         motion_ = start_design(study_);
+        keep_motion(true);
         run_.enter("map");
         search_motion();
         OriginMap& map = run_.map.map_of(motion_);
@@ -223,6 +225,7 @@ class MapStrategy {
             for (int i = 0; i < 2; ++i)
                 if (variables[i]->free)
                     *numbers[i] = variables[i]->low + x[i] * (variables[i]->high - variables[i]->low);
+            keep_motion(true);
             place_footprint();
             const Evaluation evaluation = nested();
             run_.record(
@@ -250,7 +253,51 @@ class MapStrategy {
             const FitResult fit = fit_partition(study_, study_.design_space, motion_, problem, quick_fit());
             if (fit.ok) design = fit.design;
         }
-        return run_.map.quick(design);
+        Evaluation evaluation = run_.map.quick(design);
+        evaluation.objective += kBrokenPrice * broken(constraint_states(study_, design));
+        return evaluation;
+    }
+
+    /// Moves the motion variables, or the footprint's place alone, to where they keep the constraints that
+    /// name nothing else. Those that name the partition too are the fit's.
+    void keep_motion(bool all) {
+        Study only = study_;
+        std::erase_if(only.constraints, [](const LinearConstraint& constraint) {
+            return std::any_of(constraint.terms.begin(), constraint.terms.end(),
+                               [](const auto& term) { return term.first.starts_with("partition."); });
+        });
+        if (only.constraints.empty()) return;
+        const DesignSpace& space = study_.design_space;
+        const std::array<const Variable*, 3> variables = {&space.dosage_factor, &space.land,
+                                                          &space.footprint_offset};
+        double* const numbers[3] = {&motion_.dosage_factor, &motion_.land, &motion_.footprint_offset};
+        std::vector<double> x(3), low(3, 0), high(3, 0);
+        const auto range = [&](std::size_t i) { return variables[i]->high - variables[i]->low; };
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (!variables[i]->free || !(range(i) > 0) || (!all && i < 2)) continue;
+            high[i] = 1;
+            x[i] = (*numbers[i] - variables[i]->low) / range(i);
+        }
+        const auto states = [&](const std::vector<double>& point) {
+            Design design = motion_;
+            double* const of_design[3] = {&design.dosage_factor, &design.land, &design.footprint_offset};
+            for (std::size_t i = 0; i < 3; ++i)
+                if (high[i] > 0) *of_design[i] = variables[i]->low + point[i] * range(i);
+            return constraint_states(only, design);
+        };
+        std::vector<std::pair<double, double>> bounds;
+        for (const ConstraintState& state : states(x))
+            bounds.emplace_back(state.low / state.scale, state.high / state.scale);
+        x = nearest_kept(
+            [&](const std::vector<double>& point) {
+                std::vector<double> values;
+                for (const ConstraintState& state : states(point))
+                    values.push_back(state.value / state.scale);
+                return values;
+            },
+            bounds, low, high, x);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (high[i] > 0) *numbers[i] = variables[i]->low + x[i] * range(i);
     }
 
     /// The footprint's place needs no spread: the map is read at another x. Coarse grid, then a finer one
@@ -268,10 +315,11 @@ class MapStrategy {
             const double step = (high - low) / (kGrid - 1);
             for (int i = 0; i < kGrid; ++i) {
                 motion_.footprint_offset = low + i * step;
+                keep_motion(false);
                 const double objective = nested().objective;
                 if (objective < best) {
                     best = objective;
-                    best_offset = motion_.footprint_offset;
+                    best_offset = motion_.footprint_offset;  // as kept
                 }
             }
             low = std::max(low, best_offset - step);

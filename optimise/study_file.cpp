@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "optimise/constraint_section.h"
 #include "optimise/heap_order.h"
 #include "optimise/joined.h"
 #include "optimise/partition_section.h"
@@ -26,9 +27,9 @@ std::string mm(double si) {
     return format_quantity(si, "length");
 }
 
-const std::array<std::string, 11> kSections = {"study",       "machine", "process",      "powder",
-                                               "interaction", "target",  "design_space", "objective",
-                                               "numerics",    "run",     "scale_up"};
+const std::array<std::string, 12> kSections = {"study",       "machine",  "process",      "powder",
+                                               "interaction", "target",   "design_space", "constraint",
+                                               "objective",   "numerics", "run",          "scale_up"};
 
 // --- design space
 // ---------------------------------------------------------------------------------------------------
@@ -143,6 +144,12 @@ void read_objective(Section& root, Study& study) {
                        Range::between(0, 1e6));
     objective.min_coverage =
         section.number("min_coverage", {objective.min_coverage, "our default"}, Range::between(0, 1));
+    if (section.has("max_waste"))
+        objective.max_waste = section.number("max_waste", {0, ""}, Range::above_to(0, 1));
+    if (section.has("min_supply_ratio"))
+        objective.min_supply_ratio = section.number("min_supply_ratio", {0, ""}, Range::above_to(0, 100));
+    section.know("max_waste");
+    section.know("min_supply_ratio");
     section.finish();
 }
 
@@ -267,6 +274,7 @@ Study parse_study(const std::string& text, const std::string& file_name,
     read_numerics(reader, root, study);
     read_target(reader, root, study);
     read_design_space(reader, root, study);
+    read_constraints(reader, root, study);
     read_objective(root, study);
     read_run(reader, root, study);
     read_scale_up(reader, root, study);
