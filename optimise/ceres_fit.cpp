@@ -10,19 +10,33 @@
 #include "dem/random.h"
 #include "optimise/bounded_search.h"
 #include "optimise/evaluation.h"
+#include "optimise/motion.h"
 
 namespace gradwright {
 namespace {
 
+/// GI per width by which a constraint is broken: far above the slope of any misfit.
+constexpr double kConstraintPrice = 30;
+
 struct ResidualFunctor {
     const FitProblem* problem;
     const PartitionFamily* family;
+    const std::vector<ConstraintRow>* rows;
     double smoothing;
 
     template <class T>
     bool operator()(const T* const* parameters, T* out) const {
         std::vector<T> residual;
         problem->residuals(*family, parameters[0], smoothing, residual);
+        if (!rows->empty()) {
+            std::vector<T> numbers;
+            family->numbers_of(parameters[0], numbers);
+            for (const ConstraintRow& row : *rows) {
+                const T value = row_value(row, numbers, problem->motion);
+                const T excess = value < row.low ? T(row.low - value) : T(value - row.high);
+                residual.push_back(excess > 0.0 ? T(kConstraintPrice * excess) : T(0.0));
+            }
+        }
         std::copy(residual.begin(), residual.end(), out);
         return true;
     }
@@ -31,19 +45,20 @@ struct ResidualFunctor {
 /// Derivatives are carried `Stride` at a time: the curve of five knots (8 parameters) in one pass, a straight
 /// one in a short pass.
 template <int Stride>
-ceres::CostFunction* autodiff(const FitProblem& problem, const PartitionFamily& family, double smoothing) {
+ceres::CostFunction* autodiff(const FitProblem& problem, const PartitionFamily& family,
+                              const std::vector<ConstraintRow>& rows, double smoothing) {
     auto* cost = new ceres::DynamicAutoDiffCostFunction<ResidualFunctor, Stride>(
-        new ResidualFunctor{&problem, &family, smoothing});
+        new ResidualFunctor{&problem, &family, &rows, smoothing});
     cost->AddParameterBlock(int(family.size()));
-    cost->SetNumResiduals(problem.residual_count() + family.bend_count());
+    cost->SetNumResiduals(problem.residual_count() + family.bend_count() + int(rows.size()));
     return cost;
 }
 
 /// Levenberg-Marquardt at one kernel width, in place; returns the evaluations spent.
-int descend(const FitProblem& problem, const PartitionFamily& family, double smoothing, int iterations,
-            std::vector<double>& p) {
-    ceres::CostFunction* cost = family.size() <= 4 ? autodiff<4>(problem, family, smoothing)
-                                                   : autodiff<8>(problem, family, smoothing);
+int descend(const FitProblem& problem, const PartitionFamily& family, const std::vector<ConstraintRow>& rows,
+            double smoothing, int iterations, std::vector<double>& p) {
+    ceres::CostFunction* cost = family.size() <= 4 ? autodiff<4>(problem, family, rows, smoothing)
+                                                   : autodiff<8>(problem, family, rows, smoothing);
     ceres::Problem least_squares;
     least_squares.AddResidualBlock(cost, nullptr, p.data());
     std::vector<int> constant;
@@ -67,13 +82,14 @@ int descend(const FitProblem& problem, const PartitionFamily& family, double smo
     ceres::Solver::Summary summary;
     ceres::Solve(options, &least_squares, &summary);
     family.clip(p);
+    p = nearest_kept(rows, family, problem.motion, p);
     return summary.num_residual_evaluations + summary.num_jacobian_evaluations;
 }
 
 /// SBPLX on hard labels: for norms that are no sum of squares (max, mean absolute), whose kinks a quadratic
 /// model would smear.
-int polish(const FitProblem& problem, const PartitionFamily& family, const FitOptions& options,
-           std::vector<double>& p) {
+int polish(const FitProblem& problem, const PartitionFamily& family, const std::vector<ConstraintRow>& rows,
+           const FitOptions& options, std::vector<double>& p) {
     BoundedSearch search;
     search.method = SearchMethod::sbplx;
     search.low = family.low();
@@ -83,8 +99,12 @@ int polish(const FitProblem& problem, const PartitionFamily& family, const FitOp
     search.budget = options.polish_evaluations;
     search.stop = options.stop;
     const BoundedSearchResult found = minimise(
-        [&](const std::vector<double>& trial) { return problem.hard_objective(family, trial); }, search);
-    if (found.evaluations > 0) p = found.best;
+        [&](const std::vector<double>& trial) {
+            const std::vector<double> kept = nearest_kept(rows, family, problem.motion, trial);
+            return problem.hard_objective(family, kept) + detour(trial, kept);
+        },
+        search);
+    if (found.evaluations > 0) p = nearest_kept(rows, family, problem.motion, found.best);
     return found.evaluations;
 }
 
@@ -177,6 +197,7 @@ FitProblem::FitProblem(const Study& study, const Design& design, std::span<const
       norm(study.objective.norm),
       x_drift_weight(study.objective.x_drift_weight) {
     const Footprint footprint = footprint_of(study, design);
+    motion = motion_values(study, design);
     grains = pool_grains(layers, footprint.x_low, footprint.x_high, share);
     thirds = thirds_of(grains);
     if (!study.target.is_field()) {
@@ -240,13 +261,16 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
     // began.
     std::vector<Start> candidates = starts_of(study, space, problem, options);
     const auto stopped = [&options] { return options.stop && options.stop(); };
+    // none for a family that has not the numbers they name: a comparison, not a design
+    const auto rows_of = [&study](const PartitionFamily& family) { return constraint_rows(study, family); };
     const auto improve = [&](Start& candidate, double kernel, int iterations) {
         const PartitionFamily family(space, length, width, candidate.orientation);
-        result.evaluations += descend(problem, family, kernel, iterations, candidate.p);
+        result.evaluations += descend(problem, family, rows_of(family), kernel, iterations, candidate.p);
         candidate.keep_best(problem.hard_objective(family, candidate.p));
     };
     for (Start& candidate : candidates) {
         const PartitionFamily family(space, length, width, candidate.orientation);
+        candidate.p = nearest_kept(rows_of(family), family, problem.motion, candidate.p);
         candidate.keep_best(problem.hard_objective(family, candidate.p));
         if (&candidate == &candidates.front()) result.start_objective = candidate.objective;
         if (stopped()) break;
@@ -263,7 +287,7 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
             if (!stopped()) improve(candidate, kernel, options.iterations);
         if (problem.norm != Norm::rmse && options.polish_evaluations > 0 && !stopped()) {
             candidate.p = candidate.best;
-            result.evaluations += polish(problem, family, options, candidate.p);
+            result.evaluations += polish(problem, family, rows_of(family), options, candidate.p);
             candidate.keep_best(problem.hard_objective(family, candidate.p));
         }
         Design finalist = design;

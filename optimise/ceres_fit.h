@@ -7,8 +7,12 @@
 //   drift_target_b)
 // A target over x and y has its cells for the bins of the first kind, column after column.
 // so that |r|^2 = rmse^2 + x_drift_weight drift_rms^2: the square of the objective of `judge` without its
-// price of waste, which no partition changes. A family with a least bend radius appends its bend_excess.
+// price of waste, which no partition changes. A family with a least bend radius appends its bend_excess, a
+// study with constraints how far each is broken, times kConstraintPrice. That price leaves an optimum on the
+// border some 1e-4 of a width outside, so what comes out is moved to the nearest point that keeps the
+// constraints before it is judged.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -32,6 +36,7 @@ struct FitProblem {
     ChamberFill fill;                                ///< makes GI of the shares
     Norm norm = Norm::rmse;     ///< of the choice and the polish; the least squares are always rmse
     double x_drift_weight = 0;  ///< [-], >= 0; 0 leaves the drift to be only reported
+    MotionValues motion = {};   ///< the design's, for constraints that name it
 
     /// `layers` = the map, footprint shifted as `design` says; targets and weights of the study.
     /// `share` as in pool_grains.

@@ -162,6 +162,11 @@ void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio) {
         s *= std::sqrt(1 + (variance_ratio.profile - 1) / columns);
 }
 
+std::vector<ConstraintState> limit_states(const Study& study, const Evaluation& evaluation) {
+    if (evaluation.fidelity == Fidelity::kinematic || !evaluation.health.ok()) return {};
+    return limit_states(study, evaluation.waste_fraction, evaluation.supply_ratio);
+}
+
 void judge(const Study& study, Evaluation& evaluation) {
     const Objective& objective = study.objective;
     evaluation.target = bin_targets(study);
@@ -243,6 +248,9 @@ void judge(const Study& study, Evaluation& evaluation) {
     const double missing = double(wanted - counting) / wanted;
     evaluation.objective = std::sqrt(value * value + objective.x_drift_weight * drift * drift) +
                            objective.waste_weight * evaluation.waste_fraction + missing;
+    evaluation.objective += kBrokenPrice * broken(limit_states(study, evaluation));
+    for (const ConstraintState& limit : limit_states(study, evaluation))
+        evaluation.residuals.push_back(kBrokenPrice * std::max(0.0, -limit.slack / limit.scale));
     // The kinematic picture knows no coverage.
     if (evaluation.fidelity != Fidelity::kinematic)
         evaluation.objective += std::max(0.0, objective.min_coverage - evaluation.coverage);

@@ -122,6 +122,11 @@ void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio);
 /// together does not average out over them. Without any counting bin the health becomes "no_bins" and the
 /// objective 10.
 void judge(const Study& study, Evaluation& evaluation);
+/// The limits of [objective] on what this evaluation measured; none for the kinematic picture, which knows
+/// neither waste nor supply, and for an evaluation without numbers.
+std::vector<ConstraintState> limit_states(const Study& study, const Evaluation& evaluation);
+/// GI per unit by which a limit or a constraint is broken: far above the slope of any misfit.
+inline constexpr double kBrokenPrice = 10;
 /// Objective of an evaluation that has no numbers: worse than any real one (a misfit is at most 1).
 inline constexpr double kNotEvaluable = 10;
 

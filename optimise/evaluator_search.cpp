@@ -11,10 +11,15 @@ Evaluation evaluate(const SearchTask& task, const std::vector<double>& x, Evalua
     // what cannot be bent is no candidate, and costs the more the tighter it is
     const double unsound = task.space.unsound(x);
     evaluation.objective += unsound;
-    if (!evaluation.residuals.empty()) evaluation.residuals.push_back(std::sqrt(unsound));
     const bool first = !search.best.health.ok();
-    if (unsound == 0 && evaluation.health.ok() && (first || evaluation.objective < search.best.objective))
-        search.best = evaluation;
+    // a limit that is kept comes before a better gradation
+    const bool kept = broken(limit_states(task.space.study(), evaluation)) == 0;
+    const bool best_kept = !first && broken(limit_states(task.space.study(), search.best)) == 0;
+    const bool better = kept != best_kept ? kept : evaluation.objective < search.best.objective;
+    if (unsound == 0 && evaluation.health.ok() && (first || better)) search.best = evaluation;
+    const double detour = task.space.detour(x);
+    evaluation.objective += detour;
+    if (!evaluation.residuals.empty()) evaluation.residuals.push_back(std::sqrt(unsound + detour));
     return evaluation;
 }
 

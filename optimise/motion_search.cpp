@@ -122,6 +122,11 @@ MotionSearch::MotionSearch(StrategyRun& run, const Design& start)
                         std::clamp(variable.value, variable.low, variable.high),
                         [&motion](Design& design, double value) { motion.of(design) = value; }});
     }
+    only_motion_ = study_;
+    std::erase_if(only_motion_.constraints, [](const LinearConstraint& constraint) {
+        return std::any_of(constraint.terms.begin(), constraint.terms.end(),
+                           [](const auto& term) { return term.first.starts_with("partition."); });
+    });
     add_chambers("dose", &Design::dose, space.dose, !space.dosage_factor.free);
     add_chambers("fill_fraction", &Design::fill_fraction, space.fill_fraction, true);
 }
@@ -215,7 +220,35 @@ Evaluation MotionSearch::nested(const Design& motion, OriginMap& map) {
             fit_partition(study_, study_.design_space, motion, problem, quick_fit(study_.seed));
         if (fit.ok) design = fit.design;
     }
-    return run_.map.quick(design, map);
+    Evaluation evaluation = run_.map.quick(design, map);
+    evaluation.objective += kBrokenPrice * broken(constraint_states(study_, design));
+    return evaluation;
+}
+
+void MotionSearch::keep(std::vector<double>& spreads, std::vector<double>& labels, bool labels_only) const {
+    if (only_motion_.constraints.empty()) return;
+    const std::size_t d = spreads.size();
+    std::vector<double> x = spreads, low(d + labels.size(), 0), high(d + labels.size(), 1);
+    x.insert(x.end(), labels.begin(), labels.end());
+    if (labels_only)
+        for (std::size_t i = 0; i < d; ++i) low[i] = high[i] = x[i];
+    const auto split = [&](const std::vector<double>& point) {
+        return design_at(std::vector(point.begin(), point.begin() + std::ptrdiff_t(d)),
+                         std::vector(point.begin() + std::ptrdiff_t(d), point.end()));
+    };
+    std::vector<std::pair<double, double>> bounds;
+    for (const ConstraintState& state : constraint_states(only_motion_, split(x)))
+        bounds.emplace_back(state.low / state.scale, state.high / state.scale);
+    x = nearest_kept(
+        [&](const std::vector<double>& point) {
+            std::vector<double> values;
+            for (const ConstraintState& state : constraint_states(only_motion_, split(point)))
+                values.push_back(state.value / state.scale);
+            return values;
+        },
+        bounds, low, high, x);
+    spreads.assign(x.begin(), x.begin() + std::ptrdiff_t(d));
+    labels.assign(x.begin() + std::ptrdiff_t(d), x.end());
 }
 
 std::vector<double> MotionSearch::least(std::size_t n,
@@ -268,10 +301,11 @@ std::string MotionSearch::describe(const Design& motion) const {
     return text;
 }
 
-bool MotionSearch::spread(const std::vector<double>& at, double promised) {
-    std::vector<double> labels;
+bool MotionSearch::spread(const std::vector<double>& wanted, double promised) {
+    std::vector<double> at = wanted, labels;
     for (const Direction& direction : labels_)
         labels.push_back((direction.start - direction.low) / (direction.high - direction.low));
+    keep(at, labels, false);
     OriginMap& map = run_.map.map_of(design_at(at, labels));
     if (!map.health.ok()) {
         run_.record("motion", run_.map.quick(design_at(at, labels), map), describe(design_at(at, labels)));
@@ -279,8 +313,14 @@ bool MotionSearch::spread(const std::vector<double>& at, double promised) {
     }
     double value = 0;
     labels = least(
-        labels_.size(), [&](const std::vector<double>& x) { return nested(design_at(at, x), map).objective; },
+        labels_.size(),
+        [&](const std::vector<double>& x) {
+            std::vector<double> same = at, kept = x;
+            keep(same, kept, true);
+            return nested(design_at(at, kept), map).objective + detour(x, kept);
+        },
         labels, value);
+    keep(at, labels, true);
     const Design motion = design_at(at, labels);
     const Evaluation found = nested(motion, map);
     run_.record(
@@ -289,7 +329,10 @@ bool MotionSearch::spread(const std::vector<double>& at, double promised) {
                                 ? fmt::format("; objective between the maps {:.3f}, on its own {:.3f}",
                                               promised, found.objective)
                                 : fmt::format("; objective {:.3f}", found.objective)));
-    nodes_.push_back({at, motion, found.objective});
+    // moved onto one that is there already, it says nothing new
+    if (std::none_of(nodes_.begin(), nodes_.end(),
+                     [&](const Node& node) { return distance(node.at, at) < 1e-9; }))
+        nodes_.push_back({at, motion, found.objective});
     return true;
 }
 
@@ -334,17 +377,22 @@ Design MotionSearch::best() {
         };
         const auto objective = [&](const std::vector<double>& x) {
             if (run_.runner.stopped()) return kNotEvaluable;
-            const auto [at, labels] = split(x);
+            auto [at, labels] = split(x);
+            keep(at, labels, false);
             OriginMap map = run_.map.between(motions, interpolation_shares(known, at));
-            return nested(design_at(at, labels), map).objective;
+            std::vector<double> kept = at;
+            kept.insert(kept.end(), labels.begin(), labels.end());
+            return nested(design_at(at, labels), map).objective + detour(x, kept);
         };
         std::vector<double> from = best_node()->at;
         for (const Direction& label : labels_)
             from.push_back((label.start - label.low) / (label.high - label.low));
         double promised = 0;
-        const auto [at, labels] = split(least(n, objective, from, promised));
-        const bool known_already = std::any_of(
-            known.begin(), known.end(), [&](const auto& point) { return distance(point, at) < kSame; });
+        auto [at, labels] = split(least(n, objective, from, promised));
+        keep(at, labels, false);
+        const bool known_already =
+            std::any_of(known.begin(), known.end(),
+                        [&, &here = at](const auto& point) { return distance(point, here) < kSame; });
         if (known_already || promised >= best_node()->objective) {
             end = "nothing better between the maps";
             break;

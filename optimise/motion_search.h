@@ -7,6 +7,8 @@
 // motion it calls best is spread (the check), and joins the corners. The search ends when the best of the
 // interpolated maps is a motion already spread or promises nothing better, or with its budget; its answer is
 // always a motion that was spread.
+// A motion that the study's constraints forbid is moved to the nearest that keeps them before it is looked
+// at.
 //
 // The first points are the start; the motion whose heap turns over most nearly kBestTurnovers times on its
 // way to the part; then corners of the box, the furthest from all before first. Doses of the two chambers,
@@ -75,12 +77,16 @@ class MotionSearch {
                               const std::function<double(const std::vector<double>&)>& objective,
                               const std::vector<double>& start, double& value) const;
     std::string describe(const Design& motion) const;
+    /// Shares of the directions' ranges moved to where the constraints that name no part of the partition are
+    /// kept; those that do are the fit's. `labels_only`: what spreads stays.
+    void keep(std::vector<double>& spreads, std::vector<double>& labels, bool labels_only) const;
 
     StrategyRun& run_;
     const Study& study_;
     const Design start_;
     std::vector<Direction> spreads_, labels_;
     std::vector<Node> nodes_;
+    Study only_motion_;  ///< the study with those constraints alone
 };
 
 }  // namespace gradwright

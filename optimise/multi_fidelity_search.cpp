@@ -30,7 +30,7 @@ class CorrectedMap {
 
     double operator()(const std::vector<double>& x) const {
         Evaluation evaluation = map_.evaluate(task_.space.design(x), 0);
-        return value(evaluation, discrepancy_) + task_.space.unsound(x);
+        return value(evaluation, discrepancy_) + task_.space.unsound(x) + task_.space.detour(x);
     }
     void correct_at(const std::vector<double>& x, const Evaluation& full) {
         const Evaluation map = map_.evaluate(task_.space.design(x), 0);
@@ -38,7 +38,8 @@ class CorrectedMap {
         if (!map.health.ok()) return;
         discrepancy_.profile = difference(full.judged().gi, map.judged().gi);
         discrepancy_.drift = difference(full.drift.difference, map.drift.difference);
-        discrepancy_.rest = full.objective - task_.space.unsound(x) - value(map, discrepancy_);
+        discrepancy_.rest =
+            full.objective - task_.space.unsound(x) - task_.space.detour(x) - value(map, discrepancy_);
     }
 
   private:

@@ -310,25 +310,28 @@ std::vector<double> PartitionFamily::fit_samples(std::span<const PlanPoint> samp
     return p;
 }
 
+std::vector<std::string> PartitionFamily::number_names() const {
+    if (family_ == Family::straight) return {"angle", "offset"};
+    if (family_ == Family::sigmoid) return {"centre", "height", "place", "width_10_90"};
+    std::vector<std::string> names;
+    for (int k = 0; k < knots_; ++k) {
+        names.push_back(fmt::format("x{}", k));
+        names.push_back(fmt::format("y{}", k));
+        if (family_ == Family::two_curves) names.push_back(fmt::format("gap{}", k));
+    }
+    return names;
+}
+
 std::vector<std::pair<std::string, double>> PartitionFamily::named(std::span<const double> p) const {
     std::vector<std::pair<std::string, double>> numbers;
-    if (family_ == Family::straight) {
-        numbers = {{"angle_deg", p[0] / kDegree}, {"offset_m", p[1] * width_}};
-    } else if (family_ == Family::sigmoid) {
-        numbers = {{"centre_m", p[0] * width_},
-                   {"height_m", p[1] * width_},
-                   {"place_m", p[2] * length_},
-                   {"width_10_90_m", std::exp(p[3]) * length_}};
-    } else {
-        std::vector<double> x, y;
-        knots_of(p.data(), x, y);
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            numbers.emplace_back(fmt::format("x{}_m", k), x[k]);
-            numbers.emplace_back(fmt::format("y{}_m", k), y[k]);
-            if (family_ == Family::two_curves)
-                numbers.emplace_back(fmt::format("gap{}_m", k), p[knots_ + k] * width_);
-        }
-    }
+    const std::vector<std::string> names = number_names();
+    std::vector<double> values;
+    numbers_of(p.data(), values);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i] == "angle")
+            numbers.emplace_back("angle_deg", values[i] / kDegree);
+        else
+            numbers.emplace_back(names[i] + "_m", values[i]);
     // beyond a kilometre it is the rounding of a straight line
     if (const double radius = least_bend_radius(p); radius < 1e3)
         numbers.emplace_back("least_bend_radius_m", radius);

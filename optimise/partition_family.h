@@ -80,6 +80,12 @@ class PartitionFamily {
                                     std::span<const PlanPoint> second) const;
     /// Clips p to the bounds: optimisers leave them by round-off.
     void clip(std::span<double> p) const;
+    /// The family's own numbers in the order of `named`, without its units and additions: "angle", "x0", "y0"
+    /// ...
+    std::vector<std::string> number_names() const;
+    /// Those numbers [rad, m]; T = double or ceres::Jet.
+    template <class T>
+    void numbers_of(const T* p, std::vector<T>& numbers) const;
     /// The design's numbers for people: straight: angle [deg], offset [m]; polyline: x_k, y_k [m]. A mirrored
     /// curve says so.
     std::vector<std::pair<std::string, double>> named(std::span<const double> p) const;
@@ -121,6 +127,27 @@ void PartitionFamily::knots_of(const T* p, std::vector<T>& x, std::vector<T>& y)
             const double bound = orientation_.rising ? y_high_ : y_low_;
             y.push_back(y.back() + p[k] * (bound - y.back()));
         }
+    }
+}
+
+template <class T>
+void PartitionFamily::numbers_of(const T* p, std::vector<T>& numbers) const {
+    using std::exp;
+    numbers.clear();
+    if (family_ == Family::straight) {
+        numbers = {p[0], p[1] * width_};
+        return;
+    }
+    if (family_ == Family::sigmoid) {
+        numbers = {p[0] * width_, p[1] * width_, p[2] * length_, exp(p[3]) * length_};
+        return;
+    }
+    std::vector<T> x, y;
+    knots_of(p, x, y);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        numbers.push_back(x[k]);
+        numbers.push_back(y[k]);
+        if (family_ == Family::two_curves) numbers.push_back(p[knots_ + k] * width_);
     }
 }
 

@@ -6,7 +6,8 @@ namespace gradwright {
 
 SearchSpace::SearchSpace(const Study& study, const PartitionFamily& family, const Design& start,
                          const std::vector<double>& p, Moves moves)
-    : family_(family),
+    : study_(study),
+      family_(family),
       design_(start),
       partition_free_(study.design_space.partition_free),
       low_(family.low()),
@@ -41,15 +42,38 @@ int SearchSpace::free_count() const {
     return count;
 }
 
-Design SearchSpace::design(const std::vector<double>& x) const {
+std::vector<double> SearchSpace::kept(const std::vector<double>& x) const {
     std::vector<double> inside = x;
     for (std::size_t i = 0; i < size(); ++i) inside[i] = std::clamp(inside[i], low_[i], high_[i]);
+    if (study_.constraints.empty()) return inside;
+    std::vector<std::pair<double, double>> bounds;
+    for (const ConstraintState& state : constraint_states(study_, at(inside, false)))
+        bounds.emplace_back(state.low / state.scale, state.high / state.scale);
+    return nearest_kept(
+        [this](const std::vector<double>& point) {
+            std::vector<double> values;
+            for (const ConstraintState& state : constraint_states(study_, at(point, false)))
+                values.push_back(state.value / state.scale);
+            return values;
+        },
+        bounds, low_, high_, inside);
+}
+
+double SearchSpace::detour(const std::vector<double>& x) const {
+    return study_.constraints.empty() ? 0 : gradwright::detour(x, kept(x));
+}
+
+Design SearchSpace::design(const std::vector<double>& x) const {
+    return at(kept(x), true);
+}
+
+Design SearchSpace::at(const std::vector<double>& inside, bool with_curve) const {
     Design design = design_;
     const std::size_t parameters = size() - motion_.size();
     if (partition_free_) {
         const auto p = std::span(inside).first(parameters);
         design.family = family_.family();
-        design.partition = family_.curve(p);
+        if (with_curve) design.partition = family_.curve(p);
         design.parameters = family_.named(p);
     }
     for (std::size_t i = 0; i < motion_.size(); ++i)
@@ -60,8 +84,8 @@ Design SearchSpace::design(const std::vector<double>& x) const {
 
 double SearchSpace::unsound(const std::vector<double>& x) const {
     if (!partition_free_) return 0;
-    std::vector<double> inside(x.begin(), x.end() - std::ptrdiff_t(motion_.size()));
-    family_.clip(inside);
+    std::vector<double> inside = kept(x);
+    inside.resize(inside.size() - motion_.size());
     return family_.unsound(inside);
 }
 

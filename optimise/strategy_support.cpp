@@ -137,6 +137,24 @@ void StrategyRun::close() {
     result.seconds_cold = result.seconds + runner.seconds_saved;
 }
 
+void StrategyRun::check_constraints() {
+    result.constraints = constraint_states(study, result.design);
+    const Evaluation& of = result.confirmations.empty() ? result.predicted : result.confirmations.front();
+    if (of.health.ok() && of.fidelity != Fidelity::kinematic)
+        for (const ConstraintState& limit : limit_states(study, result.waste_fraction, result.supply_ratio))
+            result.constraints.push_back(limit);
+    const ConstraintState* nearest = binding(result.constraints);
+    if (!nearest) return;
+    constexpr double kBinds = 1e-6;  // of its scale
+    if (!nearest->kept()) {
+        result.verdict = Verdict::not_met;
+        result.message = fmt::format("No design was found that keeps every constraint: {}. {}",
+                                     describe(*nearest), result.message);
+    } else if (result.verdict != Verdict::met && nearest->slack < kBinds * nearest->scale) {
+        result.message += fmt::format(" The constraint {} binds.", describe(*nearest));
+    }
+}
+
 StudyResult StrategyRun::fail(const std::string& reason) {
     close();
     result.termination = runner.stopped() ? "interrupted" : "failed";
@@ -178,6 +196,7 @@ StudyResult StrategyRun::finish_extrapolated(const Evaluation& predicted, const 
         with_interval(result.drift_misfit));
     if (result.verdict == Verdict::undecided)
         result.message += " A longer strip in scale_up.lengths narrows the band.";
+    check_constraints();
     return std::move(result);
 }
 
@@ -228,6 +247,7 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
             failed ? "No confirmation could be spread: " + last_failure_
                    : fmt::format("Not confirmed: {}; the numbers are predictions.",
                                  runner.stopped() ? "interrupted" : "no spread was left in run.max_spreads");
+        check_constraints();
         return std::move(result);
     }
 
@@ -265,6 +285,7 @@ StudyResult StrategyRun::finish(const std::vector<ConfirmedDesign>& rounds) {
                          : round.verdict == Verdict::undecided ? "budget"
                          : spreads_left() > 0                  ? "converged"
                                                                : "budget";
+    check_constraints();
     return std::move(result);
 }
 

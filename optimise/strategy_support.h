@@ -46,6 +46,9 @@ class StrategyRun {
 
   private:
     void close();
+    /// Checks the design found against every constraint and limit; one that is broken, or that binds where
+    /// the target is not met, is named in the message.
+    void check_constraints();
 
     std::chrono::steady_clock::time_point begun_, stage_begun_;
     std::string stage_;

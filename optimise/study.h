@@ -1,6 +1,7 @@
 // Study: the whole question, in SI. Read from TOML by study_file; constant afterwards.
 #pragma once
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include "dem/gradation.h"
 #include "dem/scene.h"
 #include "dem/spread.h"
+#include "optimise/constraint.h"
 #include "targets/misfit.h"
 #include "targets/target.h"
 
@@ -75,6 +77,9 @@ struct Objective {
     double x_drift_weight = 0.5;
     double waste_weight = 0.02;
     double min_coverage = 0.95;
+    // limits: a design that breaks one is never met, however good its gradation
+    double max_waste = std::numeric_limits<double>::infinity();  ///< of the dose [-]
+    double min_supply_ratio = 0;                                 ///< [-]; 0 = none
 };
 
 /// [partition_build]: what the workshop and the operator need beyond the curve itself.
@@ -143,6 +148,7 @@ struct Study {
     BinGrid bins;         ///< default 0.2 mm over the width
     int columns = 3;      ///< a field is judged over this many equal parts of the footprint along x
     DesignSpace design_space;
+    std::vector<LinearConstraint> constraints;  ///< [[constraint]]
     Objective objective;
     std::uint64_t seed = 1;
     int map_spreads = 1;                ///< strips pooled in the map

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "optimise/build_section.h"
+#include "optimise/constraint_section.h"
 #include "optimise/heap_order.h"
 #include "optimise/joined.h"
 #include "optimise/motion.h"
@@ -28,9 +29,9 @@ std::string mm(double si) {
     return format_quantity(si, "length");
 }
 
-const std::array<std::string, 12> kSections = {"study",       "machine", "process",      "powder",
-                                               "interaction", "target",  "design_space", "objective",
-                                               "numerics",    "run",     "scale_up",     "partition_build"};
+const std::array<std::string, 13> kSections = {
+    "study",      "machine",   "process",  "powder", "interaction", "target",         "design_space",
+    "constraint", "objective", "numerics", "run",    "scale_up",    "partition_build"};
 
 /// A value of the process that may be freed: its range stands under [design_space], its start is the
 /// process's own where that lies inside.
@@ -192,6 +193,12 @@ void read_objective(Section& root, Study& study) {
                        Range::between(0, 1e6));
     objective.min_coverage =
         section.number("min_coverage", {objective.min_coverage, "our default"}, Range::between(0, 1));
+    if (section.has("max_waste"))
+        objective.max_waste = section.number("max_waste", {0, ""}, Range::above_to(0, 1));
+    if (section.has("min_supply_ratio"))
+        objective.min_supply_ratio = section.number("min_supply_ratio", {0, ""}, Range::above_to(0, 100));
+    section.know("max_waste");
+    section.know("min_supply_ratio");
     section.finish();
 }
 
@@ -337,6 +344,7 @@ Study parse_study(const std::string& text, const std::string& file_name,
     read_numerics(reader, root, study);
     read_target(reader, root, study);
     read_design_space(reader, root, study);
+    read_constraints(reader, root, study);
     read_objective(root, study);
     read_run(reader, root, study);
     read_scale_up(reader, root, study);

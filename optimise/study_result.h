@@ -40,6 +40,8 @@ struct StudyResult {
     std::optional<Evaluation> kinematic;
     std::optional<PowderGate> powder_gate;   ///< unlike powders only
     std::optional<ScaledHeap> extrapolated;  ///< studies with [scale_up]: what the numbers rest on
+    /// Every [[constraint]] and limit, as the design found stands to it; a broken one is never "met".
+    std::vector<ConstraintState> constraints;
     double capture_fraction = 0, supply_ratio = 0, coverage = 0, waste_fraction = 0, packing_fraction = 0,
            waste_a_share = 0;
     int spreads_map = 0, spreads_full = 0;

@@ -235,6 +235,22 @@ json misfit_json(const Misfit& misfit) {
             {"tolerance", number(misfit.tolerance)}};
 }
 
+json constraints_json(const std::vector<ConstraintState>& states) {
+    json list = json::array();
+    for (const ConstraintState& state : states)
+        list.push_back({{"name", state.name},
+                        {"kind", state.limit ? "limit" : "linear"},
+                        {"unit", state.dimension == "length"  ? "m"
+                                 : state.dimension == "angle" ? "rad"
+                                                              : "1"},
+                        {"value", number(state.value)},
+                        {"at_least", number(state.low)},
+                        {"at_most", number(state.high)},
+                        {"slack", number(state.slack)},
+                        {"kept", state.kept()}});
+    return list;
+}
+
 json design_json(const Study& study, const Design& design) {
     json parameters = json::object();
     for (const auto& [name, value] : design.parameters) parameters[name] = number(value);
@@ -346,6 +362,7 @@ json to_json(const Study& study, const StudyResult& result, const std::vector<st
         {"seed", result.seed},
         {"provenance", provenance},
         {"files", files}};
+    if (!result.constraints.empty()) object["constraints"] = constraints_json(result.constraints);
     if (const json field = field_json(result); !field.is_null()) object["field"] = field;
     return object;
 }
@@ -382,6 +399,9 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
     object["map"] = map;
     object["judged_layer"] = judged_layer_json(study);
     object["layers"] = layers_json(study, evaluation);
+    std::vector<ConstraintState> constraints = constraint_states(study, evaluation.design);
+    for (const ConstraintState& limit : limit_states(study, evaluation)) constraints.push_back(limit);
+    if (!constraints.empty()) object["constraints"] = constraints_json(constraints);
     if (const json field = field_json(evaluation); !field.is_null()) object["field"] = field;
     if (!evaluation.health.ok()) drift["value"] = drift["noise_floor"] = drift["debiased"] = nullptr;
     object["x_drift"] = drift;

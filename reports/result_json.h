@@ -22,6 +22,8 @@ nlohmann::json evaluation_json(const Study& study, const Evaluation& evaluation,
 
 // Parts shared with the report and partition.json.
 nlohmann::json design_json(const Study& study, const Design& design);
+/// [{name, kind, unit, value, at_least, at_most, slack, kept}]; an open bound is null.
+nlohmann::json constraints_json(const std::vector<ConstraintState>& states);
 nlohmann::json misfit_json(const Misfit& misfit);
 nlohmann::json inputs_json(const Study& study);
 

@@ -84,6 +84,8 @@ std::string summary(const Study& study, const StudyResult& result, const std::st
     for (std::size_t i = 0; i < words.fill.size(); ++i) text += line(i == 0 ? "fill" : "", words.fill[i]);
     text += line("dose", words.dose);
     text += line("powder", words.losses);
+    for (const ConstraintState& state : result.constraints)
+        text += line(state.kept() ? "keeps" : "breaks", describe(state));
     text += "\n";
     if (proved)
         text += profile_table(result.confirmed, result.target, &result.predicted.profile, result.band_low,
@@ -146,6 +148,10 @@ std::string evaluation_summary_text(const Study& study, const Evaluation& evalua
     text += layers_text(study, evaluation.layers);
     text += fmt::format("  {} grains, {} steps, {}, seed {}\n", evaluation.grains, evaluation.steps,
                         duration(evaluation.seconds), evaluation.seed);
+    for (const ConstraintState& state : constraint_states(study, evaluation.design))
+        text += fmt::format("  {} {}\n", state.kept() ? "keeps" : "breaks", describe(state));
+    for (const ConstraintState& state : limit_states(study, evaluation))
+        text += fmt::format("  {} {}\n", state.kept() ? "keeps" : "breaks", describe(state));
     for (const std::string& warning : evaluation.health.warnings) text += "  warning   " + warning + "\n";
     return text;
 }

@@ -415,6 +415,8 @@
       h("p", { class: "note" }, "Only grains whose forces were evaluated count. Times are those of an empty cache."),
       result.beds.length ? h("div", {}, h("h3", { style: "margin-top:1rem" }, "Settled beds"), table([R("packing"), R("coordination"), R("overlap / r"), R("speed / √(g d)"), R("carried weight")],
         result.beds.map((b) => [known(b.packing_fraction) ? b.packing_fraction.toFixed(3) : "–", known(b.mean_coordination) ? b.mean_coordination.toFixed(2) : "–", known(b.max_overlap_ratio) ? b.max_overlap_ratio.toFixed(4) : "–", known(b.speed_number) ? b.speed_number.toExponential(1) : "–", known(b.carried_weight_ratio) ? b.carried_weight_ratio.toFixed(4) : "–"]))) : null),
+    result.constraints?.length ? h("div", { class: "card w12" }, h("h3", {}, "Constraints and limits, as the design found stands to them"), table(["name", R("value"), R("at least"), R("at most"), R("slack"), "kept"],
+      result.constraints.map((c) => { const show = (v) => (!known(v) ? "–" : c.unit === "m" ? `${mm(v)} mm` : c.unit === "rad" ? `${((v * 180) / Math.PI).toFixed(3)}°` : v.toFixed(4)); return [c.name, show(c.value), show(c.at_least), show(c.at_most), show(c.slack), c.kept ? "yes" : "NO"]; }))) : null,
     result.given_used.length ? h("div", { class: "card w12" }, h("h3", {}, "Options of the search, given and used"), table(["option", "given → used"], result.given_used.map((g) => [g.option, g.given_used]))) : null));
 
   // ---- inputs and provenance -----------------------------------------------------------------------------------------
