@@ -236,7 +236,7 @@
       ariaLabel: names[k], ariaDescription: `${names[k]} over the cells of x and y`,
       marks: [
         Plot.rect(cells.filter((c) => known(c[key])), { x1: "x1", x2: "x2", y1: "y1", y2: "y2", fill: key, fillOpacity: (c) => (c.counts ? 1 : 0.35), inset: 0.5, title: tip }),
-        Plot.text(cells.filter((c) => known(c[key])), { x: (c) => (c.x1 + c.x2) / 2, y: (c) => (c.y1 + c.y2) / 2, text: (c) => (key === "off" ? d3.format("+.2f")(c[key]) : c[key].toFixed(2)), fontSize: 10, fill: (c) => (key !== "off" && Math.abs(c[key] - 0.5) > 0.42 ? "#fff" : "#222") }),
+        Plot.text(cells.filter((c) => known(c[key])), { x: (c) => (c.x1 + c.x2) / 2, y: (c) => (c.y1 + c.y2) / 2, text: (c) => (key === "off" ? d3.format("+.2f")(c[key]) : c[key].toFixed(2)), fontSize: 10, fill: (c) => ((key === "off" ? Math.abs(c.off) > 0.6 * reach : Math.abs(c[key] - 0.5) > 0.42) ? "#fff" : "#222") }),
         Plot.text([names[k]], { frameAnchor: "top", text: (d) => d, dy: -14, fontWeight: 600 }),
       ],
     })));

@@ -55,6 +55,76 @@ json schema(const std::string& name) {
     return json::parse(file);
 }
 
+/// A field of 2 columns over the fixture's bins: cell value = column + bin / 100, so that a place tells
+/// itself.
+StudyResult with_field(Study& study) {
+    study.target.shape = TargetShape::field;
+    study.target.field_x = {1.6e-3, 3.2e-3};
+    study.target.table_y = {0, 1.6e-3};
+    study.target.field_gi = {0, 0.2, 0.8, 1};
+    study.target.table_gi = {0.1, 0.9};
+    study.columns = 2;
+    StudyResult result = fixture::result(study);
+    const std::size_t bins = static_cast<std::size_t>(study.bins.count);
+    GradationField field;
+    field.x_m = {2.0e-3, 2.8e-3};
+    for (std::size_t b = 0; b < bins; ++b) field.y_m.push_back(study.bins.centre(static_cast<int>(b)));
+    for (std::size_t cell = 0; cell < 2 * bins; ++cell) {
+        field.cells.y_m.push_back(field.y_m[cell % bins]);
+        field.cells.gi.push_back(0.5 * static_cast<double>(cell / bins) +
+                                 static_cast<double>(cell % bins) / 100);
+        field.cells.standard_error.push_back(0.01);
+    }
+    result.predicted.field = result.confirmed_field = field;
+    result.field_target = field.cells.gi;
+    result.field_weight.assign(2 * bins, 1);
+    result.field_weight[bins + 3] = 0;
+    return result;
+}
+
+TEST(ResultJson, a_field_stands_row_by_row_with_what_is_left_out_kept_apart) {
+    Study study = fixture::study();
+    const StudyResult result = with_field(study);
+    const json object = to_json(study, result, {});
+    expect_required(schema("design.schema.json"), object, "");
+    const json& field = at(object, "field");
+    expect_required(schema("design.schema.json")["properties"]["field"], field, "field");
+    ASSERT_EQ(field["confirmed"].size(), 8u);
+    ASSERT_EQ(field["confirmed"][0].size(), 2u);
+    EXPECT_DOUBLE_EQ(field["confirmed"][5][0], 0.05);
+    EXPECT_DOUBLE_EQ(field["predicted"][5][1], 0.55);
+    EXPECT_TRUE(field["target"][3][1].is_null());
+    EXPECT_TRUE(field["confirmed"][3][1].is_null());
+    EXPECT_DOUBLE_EQ(field["left_out"]["confirmed"][3][1], 0.53);
+    EXPECT_TRUE(field["left_out"]["confirmed"][3][0].is_null());
+    // 15 cells count: Sidak over them
+    std::vector<double> errors(15, 0.01);
+    EXPECT_NEAR(field["band_high"][5][0].get<double>(), 0.05 + 0.01 * simultaneous_factor(errors), 1e-12);
+    EXPECT_EQ(object["x_drift"]["profile"]["target"].size(), 8u);
+    EXPECT_EQ(field["of"], "confirmed");
+    // a target of y alone has none
+    const Study plain = fixture::study();
+    EXPECT_FALSE(to_json(plain, fixture::result(plain), {}).contains("field"));
+    EXPECT_FALSE(to_json(plain, fixture::result(plain), {}).contains("constraints"));
+}
+
+TEST(ResultJson, constraints_stand_with_their_slack_and_open_ends_are_null) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    const double open = std::numeric_limits<double>::infinity();
+    result.constraints = {{"fall", "length", 0.3e-3, 0.1e-3, open, 0.2e-3, 1.6e-3, false},
+                          {"objective.max_waste", "", 0.4, -open, 0.35, -0.05, 1, true}};
+    const json list = at(to_json(study, result, {}), "constraints");
+    ASSERT_EQ(list.size(), 2u);
+    EXPECT_EQ(list[0]["unit"], "m");
+    EXPECT_EQ(list[0]["kind"], "linear");
+    EXPECT_EQ(list[0]["kept"], true);
+    EXPECT_TRUE(list[0]["at_most"].is_null());
+    EXPECT_EQ(list[1]["kind"], "limit");
+    EXPECT_EQ(list[1]["kept"], false);
+    EXPECT_DOUBLE_EQ(list[1]["slack"], -0.05);
+}
+
 TEST(ResultJson, unequal_fills_state_what_the_level_chambers_lay) {
     const Study study = fixture::study();
     StudyResult result = fixture::result(study);
