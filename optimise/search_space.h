@@ -16,8 +16,7 @@ enum class Moves { everything, labels };
 class SearchSpace {
   public:
     /// `start` gives all that is not free; `p` = the family's parameters at the start, clipped to its bounds.
-    /// `study` must outlive the space. The footprint is kept whole on the platform: a cut one would be a
-    /// smaller part, not a better place.
+    /// The footprint is kept whole on the platform: a cut one would be a smaller part, not a better place.
     SearchSpace(const Study& study, const PartitionFamily& family, const Design& start,
                 const std::vector<double>& p, Moves moves = Moves::everything);
 
@@ -44,7 +43,7 @@ class SearchSpace {
     /// Motion and partition numbers at a point of the box; the curve itself only where it is wanted.
     Design at(const std::vector<double>& inside, bool with_curve) const;
 
-    const Study& study_;
+    Study study_;  ///< a copy: a space outlives whoever made it
     PartitionFamily family_;
     Design design_;
     bool partition_free_;
