@@ -53,7 +53,7 @@ TEST(InterpolationShares, outside_the_hull_and_without_a_simplex_the_nearest_sta
     EXPECT_EQ(interpolation_shares({{0.2, 0.2}, {0.8, 0.8}}, {0.3, 0.3}), (std::vector<double>{1, 0}));
     EXPECT_EQ(interpolation_shares({{0.5, 0.5}}, {0.1, 0.9}), (std::vector<double>{1}));
     // three on a line span no triangle
-    EXPECT_EQ(interpolation_shares({{0, 0}, {0.5, 0.5}, {1, 1}}, {0.9, 0.6}), (std::vector<double>{0, 0, 1}));
+    EXPECT_EQ(interpolation_shares({{0, 0}, {0.5, 0.5}, {1, 1}}, {0.9, 0.8}), (std::vector<double>{0, 0, 1}));
 }
 
 struct Maps {
