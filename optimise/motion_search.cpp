@@ -150,8 +150,8 @@ void MotionSearch::add_chambers(const char* name, std::array<double, 2> Design::
                             mean, [values](Design& design, double value) {
                                 (design.*values) = {value, value};
                             }});
-    const double most = std::min({0.5 * (a.high - b.low), 0.5 * (b.high - a.low)});
-    labels_.push_back({fmt::format("tilt of {}", name), -most, most, tilt,
+    const double least = 0.5 * (a.low - b.high), most = 0.5 * (a.high - b.low);
+    labels_.push_back({fmt::format("tilt of {}", name), least, most, tilt,
                        [values, variables, mean, mean_too](Design& design, double value) {
                            auto& pair = design.*values;
                            const double middle = mean_too ? 0.5 * (pair[0] + pair[1]) : mean;
@@ -397,7 +397,9 @@ Design MotionSearch::best() {
             end = "nothing better between the maps";
             break;
         }
-        if (!spread(at, promised)) break;
+        const std::size_t before = nodes_.size();
+        // a constraint may move the motion onto one that is there: asking again would not end
+        if (!spread(at, promised) || nodes_.size() == before) break;
     }
     run_.result.given_used.emplace_back("motion search",
                                         fmt::format("{} motions spread, {}", nodes_.size(), end));

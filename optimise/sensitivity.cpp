@@ -222,7 +222,7 @@ class SensitivityRun {
         std::vector<std::vector<double>> z;
         std::vector<std::vector<double>> rows;
         for (const auto& point : latin_hypercube(options_.strips, d, study_.seed)) {
-            if (runner_.stopped()) return;
+            if (runner_.stopped()) break;  // what is there is fitted
             Study changed = study_;
             changed.map_spreads = 1;
             Design moved = out_.design;
@@ -236,7 +236,7 @@ class SensitivityRun {
             const Evaluation evaluation = strip.quick(moved);
             const std::vector<double> found =
                 evaluation.health.ok() ? outputs_of(evaluation, weight_) : std::vector<double>();
-            if (evaluation.health.status == "interrupted") return;
+            if (evaluation.health.status == "interrupted") break;
             if (found.empty() || !all_finite(found)) {
                 out_.failed.push_back({values, evaluation.health.status, evaluation.health.reason});
                 continue;

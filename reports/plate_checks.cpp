@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "optimise/build_section.h"
+#include "optimise/tolerance_budget.h"
 #include "reports/wording.h"
 
 namespace gradwright {
@@ -90,11 +91,7 @@ std::string fine(double metres) {
 }  // namespace
 
 double linear_tolerance(double length) {
-    constexpr std::array<std::pair<double, double>, 6> kClassM = {
-        {{6, 0.1}, {30, 0.2}, {120, 0.3}, {400, 0.5}, {1000, 0.8}, {2000, 1.2}}};
-    for (const auto& [up_to, tolerance] : kClassM)
-        if (std::abs(length) * 1e3 <= up_to * (1 + 1e-12)) return tolerance * 1e-3;
-    return 1.2e-3;
+    return general_tolerance(ToleranceClass::m, length);
 }
 
 std::vector<PlateCheck> plate_checks(const Study& study, const std::vector<Plate>& plates) {

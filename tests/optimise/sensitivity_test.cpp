@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <set>
 
@@ -126,6 +127,22 @@ TEST(Sensitivity, strips_find_the_input_that_turns_the_heap_and_name_those_that_
     EXPECT_EQ(got.motion[best].name, "design_space.dosage_factor");
     EXPECT_GT(got.effects[best].share, 0.5);
     EXPECT_LT(got.surrogate_gi_error, 0.05);
+}
+
+TEST(Sensitivity, an_interruption_keeps_the_strips_that_are_there) {
+    Case c;
+    c.options.strips = 24;
+    std::atomic<bool> stop = false;
+    c.options.run.stop = &stop;
+    int strip = 0;
+    c.options.run.spread = [&](const Scene& scene, const PartitionCurve* partition, const SpreadOptions&) {
+        stop = ++strip == 20;
+        return spread({}, *c.calls, scene, partition);
+    };
+    const Sensitivity got = run_sensitivity(c.study, c.design, c.options);
+    EXPECT_EQ(got.status, "interrupted");
+    EXPECT_EQ(got.strips, 19);  // the first spread is the design's own map
+    EXPECT_EQ(got.effects.size(), got.motion.size());
 }
 
 TEST(Sensitivity, plates_are_spread_with_both_powders_on_beds_of_their_own) {
