@@ -121,8 +121,8 @@ TEST(ChamberDoses, that_only_trade_powder_cost_no_new_map) {
     EXPECT_EQ(maps.calls->map_seeds.size(), 2u);
 }
 
-/// A partition that cannot move lays s; the doses that make the target of it are known.
-TEST(MotionSearch, doses_bend_the_profile_of_a_partition_that_stands_fixed) {
+/// A partition that cannot move lays s; the doses of 1.3 and 0.7 that make the target of it are known.
+Outcome with_free_doses(std::array<Variable, 2> dose) {
     Study study = coupon();
     study.design_space.partition_free = false;
     study.design_space.given_points = {{0, 1.3e-3}, {3.2e-3, 0.3e-3}};
@@ -137,33 +137,29 @@ TEST(MotionSearch, doses_bend_the_profile_of_a_partition_that_stands_fixed) {
         study.target.table_y.push_back(study.bins.centre(b));
         study.target.table_gi.push_back(wanted.gi(equal.gi[std::size_t(b)]));
     }
-    for (int chamber : {0, 1}) {
-        Variable& dose = study.design_space.dose[std::size_t(chamber)];
-        dose.free = true;
-        dose.low = 0.5;
-        dose.high = 1.5;
-    }
-    const Outcome got = run(study, heap);
+    study.design_space.dose = dose;
+    return run(study, heap);
+}
+
+TEST(MotionSearch, doses_bend_the_profile_of_a_partition_that_stands_fixed) {
+    const Outcome got =
+        with_free_doses({Variable{"dose.A", 1, true, 0.5, 1.5}, Variable{"dose.B", 1, true, 0.5, 1.5}});
     const auto& dose = got.result.design.dose;
     EXPECT_NEAR(dose[0] / dose[1], 1.3 / 0.7, 0.15);
     EXPECT_NEAR(dose[0] + dose[1], 2, 1e-9);  // another mean would be another motion
     EXPECT_EQ(got.result.spreads_map, 1) << "the ratio needs no map of its own";
 }
 
-/// The chambers' bounds need not be the same: only the ratio that both allow is searched.
-TEST(MotionSearch, doses_are_searched_within_the_bounds_of_each_chamber) {
-    Study study = coupon();
-    study.design_space.partition_free = false;
-    study.design_space.given_points = {{0, 1.3e-3}, {3.2e-3, 0.3e-3}};
-    study.max_spreads = 3;
-    study.design_space.dose = {Variable{"dose.A", 1.2, true, 1.0, 1.4},
-                               Variable{"dose.B", 0.8, true, 0.6, 1.0}};
-    const auto dose = run(study, {}).result.design.dose;
+TEST(MotionSearch, doses_are_searched_between_bounds_that_differ) {
+    const Outcome got =
+        with_free_doses({Variable{"dose.A", 1.2, true, 1.0, 1.4}, Variable{"dose.B", 0.8, true, 0.6, 1.0}});
+    const auto& dose = got.result.design.dose;
+    EXPECT_NEAR(dose[0] / dose[1], 1.3 / 0.7, 0.15);
     EXPECT_NEAR(dose[0] + dose[1], 2, 1e-9);
-    EXPECT_GE(dose[0], 1.0 - 1e-12);
-    EXPECT_LE(dose[0], 1.4 + 1e-12);
-    EXPECT_GE(dose[1], 0.6 - 1e-12);
-    EXPECT_LE(dose[1], 1.0 + 1e-12);
+    const Outcome short_of =
+        with_free_doses({Variable{"dose.A", 1.05, true, 1.0, 1.1}, Variable{"dose.B", 0.95, true, 0.9, 1.0}});
+    EXPECT_NEAR(short_of.result.design.dose[0], 1.1, 1e-3);  // as far as both allow
+    EXPECT_NEAR(short_of.result.design.dose[1], 0.9, 1e-3);
 }
 
 TEST(MotionSearch, finds_the_land_and_the_dosage_that_leave_no_drift) {
