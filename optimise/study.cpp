@@ -35,12 +35,13 @@ Scene scene_of(const Study& study, const Design& design, bool strip, std::uint64
     // Dispenser and platform are equally wide, so the ratio of areas is that of the lengths (physics.md 1.3).
     const double rise =
         design.dosage_factor * scene.layer_thickness * scene.platform_length / scene.dispenser_length;
-    scene.dose_height = std::max(design.dose[0], design.dose[1]) * rise;
+    const double larger = std::max(design.dose[0], design.dose[1]);
+    scene.dose_height = larger * rise;
     // Fill fraction phi leaves a headspace c = (1 - phi) depth below the rim, levelled away after the first
     // pass; a piston that rises less leaves its chamber lower in every pass.
     for (int chamber = 0; chamber < 2; ++chamber)
         scene.headspace[chamber] = (1 - design.fill_fraction[chamber]) * scene.dispenser_depth +
-                                   (scene.dose_height - design.dose[chamber] * rise);
+                                   (larger - design.dose[chamber]) * rise;  // 0, not a rounding below it
     scene.seed = seed;
     const double coarsening = strip ? study.map_coarsening : study.full_coarsening;
     return coarsening == 1 ? scene : coarse_grained(scene, coarsening);

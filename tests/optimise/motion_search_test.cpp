@@ -107,6 +107,17 @@ TEST(ChamberDoses, stand_above_the_rim_as_their_pistons_rise) {
     EXPECT_NEAR(supply_ratio(scene, 0.55, 0.28), rise * 0.55 / (scene.gap * 0.28), 1e-12);
 }
 
+TEST(ChamberDoses, that_are_equal_leave_no_step_not_even_a_rounding) {
+    const Study study = coupon();
+    Design design = start_design(study);
+    for (int k = 0; k < 50; ++k) {
+        design.dose = {0.7 + 0.014 * k, 0.7 + 0.014 * k};
+        const Scene scene = scene_of(study, design, false, 1);
+        EXPECT_EQ(scene.headspace[0], 0) << design.dose[0];  // below 0 the scene is refused
+        EXPECT_EQ(scene.headspace[1], 0) << design.dose[0];
+    }
+}
+
 TEST(ChamberDoses, that_only_trade_powder_cost_no_new_map) {
     Maps maps(coupon(), {});
     Design design = start_design(maps.study);
