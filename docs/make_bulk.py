@@ -8,13 +8,12 @@
 Answers are kept in runs/bulk/, so that a second call only rewrites the page; an hour or two on one core in all. Needs
 nothing but Python's standard library.
 """
-import json
 import math
 import os
-import subprocess
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from measured import ROOT, answer, fill, sets
+
 RUNS = os.path.join(ROOT, "runs", "bulk")
 PAGE = os.path.join(ROOT, "docs", "bulk.md")
 STUDY = "docs/bulk.toml"
@@ -44,20 +43,7 @@ def program(name, arguments):
     kept = os.path.join(RUNS, name + ".json")
     if not os.path.exists(kept) and "--kept" in sys.argv:
         return {"status": "not measured"}
-    if not os.path.exists(kept):
-        os.makedirs(RUNS, exist_ok=True)
-        print("running:", " ".join(arguments), file=sys.stderr, flush=True)
-        done = subprocess.run([os.environ.get("GRADWRIGHT", "./gradwright"), *arguments, "--json", "--quiet"], cwd=ROOT, stdout=subprocess.PIPE)
-        if done.returncode not in (0, 4, 5):
-            sys.exit(f"gradwright {' '.join(arguments)} ended with {done.returncode}")
-        with open(kept, "wb") as file:
-            file.write(done.stdout)
-    with open(kept) as file:
-        return json.load(file)
-
-
-def sets(values):
-    return [word for value in values for word in ("--set", value)]
+    return answer(kept, [*arguments, "--json", "--quiet"], (0, 4, 5))
 
 
 def spread(name, values, seed=1):
@@ -165,21 +151,4 @@ def flight():
     return "\n".join(rows)
 
 
-def main():
-    parts = {"flight": flight, "repose": repose, "gi": gi, "layer": layer, "plate": plate}
-    chosen = [part for part in sys.argv[1:] if part != "--kept"] or list(parts)
-    unknown = [c for c in chosen if c not in parts]
-    if unknown:
-        sys.exit(f"unknown part {unknown[0]}: choose from {', '.join(parts)}")
-    for name in chosen:
-        table = parts[name]()
-        with open(PAGE) as file:
-            page = file.read()
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = page.split(begin)
-        with open(PAGE, "w") as file:
-            file.write(head + begin + "\n" + table + "\n" + end + rest.split(end)[1])
-
-
-if __name__ == "__main__":
-    main()
+fill(PAGE, {"flight": flight, "repose": repose, "gi": gi, "layer": layer, "plate": plate})

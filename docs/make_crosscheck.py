@@ -13,26 +13,20 @@ import resource
 import subprocess
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+import measured
+from measured import ROOT
+
 RUNS = os.path.join(ROOT, "runs", "crosscheck")
 PAGE = os.path.join(ROOT, "docs", "crosscheck.md")
 STUDY = "examples/01_linear_coupon.toml"
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 
 
 def crosscheck(name="strip", study=STUDY, extra=()):
     """The answer of one run. Tables `forces` and `beds` are read from the same."""
     out = os.path.join(RUNS, name)
     kept = os.path.join(out, "crosscheck.json")
-    if not os.path.exists(kept):
-        os.makedirs(RUNS, exist_ok=True)
-        command = [PROGRAM, "crosscheck", "lammps", study, "--seeds", "3", *extra, "--force", "--json", "--out", out]
-        print("running:", " ".join(command), file=sys.stderr, flush=True)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
-        if done.returncode not in (0, 4):
-            sys.exit(f"crosscheck ended with exit code {done.returncode}")
-    with open(kept) as file:
-        answer = json.load(file)
+    words = ["crosscheck", "lammps", study, "--seeds", "3", *extra, "--force", "--out", out]
+    answer = measured.answer(kept, words, (0, 4), writes=True)
     if answer["status"] != "ok":
         sys.exit(f"{name}: ended with '{answer['status']}': {answer['reason']}; delete {out} to try again")
     return answer
@@ -123,21 +117,4 @@ def skin_table():
 
 
 TABLES = {"forces": forces_table, "beds": beds_table, "blade": blade_table, "skin": skin_table}
-
-
-def main():
-    wanted = sys.argv[1:] or list(TABLES)
-    for name in wanted:
-        if name not in TABLES:
-            sys.exit(f"there is no table '{name}': {', '.join(TABLES)}")
-        rows = TABLES[name]()
-        with open(PAGE) as file:
-            page = file.read()
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = page.split(begin)
-        with open(PAGE, "w") as file:
-            file.write(head + begin + "\n" + "\n".join(rows) + "\n" + end + rest.split(end)[1])
-
-
-if __name__ == "__main__":
-    main()
+measured.fill(PAGE, {name: lambda table=table: "\n".join(table()) for name, table in TABLES.items()})

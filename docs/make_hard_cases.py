@@ -8,20 +8,15 @@ GRADWRIGHT in the environment names another program than ./gradwright.
 """
 import json
 import os
-import subprocess
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from measured import ROOT, fill, said
+
 PAGE = os.path.join(ROOT, "docs", "hard-cases.md")
 
 
 def limits(part):
     """What `gradwright limits --part PART` answers."""
-    print("running: gradwright limits --part", part, file=sys.stderr, flush=True)
-    done = subprocess.run([os.environ.get("GRADWRIGHT", "./gradwright"), "limits", "--part", part, "--json", "--quiet"], cwd=ROOT, stdout=subprocess.PIPE)
-    if done.returncode not in (0, 4):
-        sys.exit(f"gradwright limits --part {part} ended with {done.returncode}")
-    return json.loads(done.stdout)
+    return json.loads(said(["limits", "--part", part, "--json", "--quiet"], (0, 4)))
 
 
 def cell(text):
@@ -74,22 +69,4 @@ def sticking_table():
     return "\n".join(rows)
 
 
-def main():
-    parts = {"cases": cases_table, "edges": edges_table, "sticking": sticking_table}
-    chosen = sys.argv[1:] or list(parts)
-    unknown = [c for c in chosen if c not in parts]
-    if unknown:
-        sys.exit(f"unknown part {unknown[0]}: choose from {', '.join(parts)}")
-    for name in chosen:
-        table = parts[name]()
-        with open(PAGE) as file:
-            page = file.read()
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = page.split(begin)
-        tail = rest.split(end)[1]
-        with open(PAGE, "w") as file:
-            file.write(head + begin + "\n" + table + "\n" + end + tail)
-
-
-if __name__ == "__main__":
-    main()
+fill(PAGE, {"cases": cases_table, "edges": edges_table, "sticking": sticking_table})

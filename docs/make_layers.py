@@ -10,14 +10,11 @@ than ./gradwright. Needs nothing but Python's standard library.
 import json
 import math
 import os
-import shlex
-import subprocess
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from measured import ROOT, fill, said, sets, shown
+
 PAGE = os.path.join(ROOT, "docs", "layers.md")
 DATA = os.path.join(ROOT, "docs", "data")
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 
 # A sixth of 01's length and a quarter of its width, and layers of 70 um: over powder and plates the gap is one layer, which must let grains of 62 um
 # through.
@@ -30,21 +27,13 @@ CASES = {"fused": [], "powder": ["process.substrate=\"powder\"", "process.gap=\"
 
 
 def words(name):
-    out = ["evaluate", "examples/12_three_layers.toml"]
-    for setting in SMALL + CASES[name]:
-        out += ["--set", setting]
-    return out
+    return ["evaluate", "examples/12_three_layers.toml", *sets(SMALL + CASES[name])]
 
 
 def answer(name):
     kept = os.path.join(DATA, f"layers-{name}.json")
     if not os.path.exists(kept):
-        command = [PROGRAM, *words(name), "--json", "--quiet", "--threads", "1"]
-        print("running:", " ".join(map(shlex.quote, command)), file=sys.stderr, flush=True)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE)
-        if done.returncode != 0:
-            sys.exit(f"ended with exit code {done.returncode}")
-        told = json.loads(done.stdout)
+        told = json.loads(said([*words(name), "--json", "--quiet", "--threads", "1"]))
         for key in ("map", "inputs", "design"):
             told.pop(key)
         for layer in told["layers"]:
@@ -68,7 +57,7 @@ def rms_against(first, layer):
 
 def table(name):
     a = answer(name)
-    rows = ["```\n./gradwright " + " ".join(map(shlex.quote, words(name))) + "\n```\n",
+    rows = ["```\n" + shown(words(name)) + "\n```\n",
             f"{a['grains']} grains, {a['steps']} steps.\n",
             "| layer | gap um | GI against layer 1, rms (noise) | misfit | x drift | captured | overflow | coverage | packing | over the rim / dose | carried off / dose |",
             "|---|---|---|---|---|---|---|---|---|---|---|"]
@@ -82,15 +71,4 @@ def table(name):
     return "\n".join(rows)
 
 
-def main():
-    with open(PAGE) as file:
-        text = file.read()
-    for name in sys.argv[1:] or list(CASES):
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = text.split(begin)
-        text = head + begin + "\n" + table(name) + "\n" + end + rest.split(end)[1]
-        with open(PAGE, "w") as file:
-            file.write(text)
-
-
-main()
+fill(PAGE, {name: lambda name=name: table(name) for name in CASES})

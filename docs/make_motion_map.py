@@ -9,14 +9,11 @@ than ./gradwright, THREADS the number of threads. Needs nothing but Python's sta
 """
 import json
 import os
-import shlex
-import subprocess
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from measured import ROOT, put, ran
+
 PAGE = os.path.join(ROOT, "docs", "motion-map.md")
 DATA = os.path.join(ROOT, "docs", "data", "motion-map.json")
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 LANDS = [0.8, 1.6, 3.2, 4.8, 6.4]
 DOSES = [2.0, 3.0, 4.5]
 PLACES = [-1.6, -0.8, 0.0]  # shift of a footprint of 1.6 mm that else ends with the platform
@@ -33,12 +30,11 @@ def measure():
     for land in LANDS:
         for dose in DOSES:
             for place in PLACES:
-                command = [PROGRAM, *words(land, dose, place), "--json", "--quiet", "--force", "--out",
+                command = [*words(land, dose, place), "--json", "--quiet", "--force", "--out",
                            os.path.join(ROOT, "runs", "motion-map")]
                 if "THREADS" in os.environ:
                     command += ["--threads", os.environ["THREADS"]]
-                print("running:", " ".join(map(shlex.quote, command)), file=sys.stderr, flush=True)
-                done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE)
+                done = ran(command)
                 row = {"land_mm": land, "dosage_factor": dose, "place_mm": place}
                 if done.returncode in (0, 4, 5) and done.stdout:
                     a = json.loads(done.stdout)
@@ -124,13 +120,8 @@ def main():
             json.dump(rows, file, indent=1)
     with open(DATA) as file:
         rows = [row for row in json.load(file) if row.get("turnover")]
-    with open(PAGE) as file:
-        page = file.read()
-    for name, table in (("law", law_table(rows)), ("motions", motions_table(rows))):
-        head, rest = page.split(f"<!-- {name}: begin -->")
-        page = head + f"<!-- {name}: begin -->\n" + table + f"\n<!-- {name}: end -->" + rest.split(f"<!-- {name}: end -->")[1]
-    with open(PAGE, "w") as file:
-        file.write(page)
+    put(PAGE, "law", law_table(rows))
+    put(PAGE, "motions", motions_table(rows))
     figure(rows)
 
 

@@ -8,13 +8,12 @@ Results are kept in runs/origin-map/, so that a second call only rewrites the pa
 """
 import json
 import os
-import subprocess
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from measured import DOCS, ROOT, put, ran
+
 RUNS = os.path.join(ROOT, "runs", "origin-map")
 STUDY = "examples/01_linear_coupon.toml"
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 
 
 def program(arguments, name):
@@ -24,8 +23,7 @@ def program(arguments, name):
         return None
     if not os.path.exists(kept):
         os.makedirs(RUNS, exist_ok=True)
-        print("running:", " ".join(arguments), file=sys.stderr, flush=True)
-        done = subprocess.run([PROGRAM, *arguments, "--json"], cwd=ROOT, stdout=subprocess.PIPE)
+        done = ran([*arguments, "--json"])
         if done.returncode not in (0, 4):
             return None
         with open(kept, "wb") as file:
@@ -173,17 +171,9 @@ def main():
     wanted = [a for a in sys.argv[1:] if a != "--kept"] or ["turnover", "evidence", "beds", "coverage"]
     if "light" in wanted:
         wanted.append("evidence")
-    page = os.path.join(ROOT, "docs", "origin-map.md")
-    with open(page) as file:
-        text = file.read()
     for name, table in (("turnover", turnover_table), ("evidence", evidence_table), ("beds", beds_table), ("coverage", coverage_table)):
-        if name not in wanted:
-            continue
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = text.split(begin)
-        text = head + begin + "\n" + table() + "\n" + end + rest.split(end)[1]
-        with open(page, "w") as file:  # each table as it comes: the next may take an hour
-            file.write(text)
+        if name in wanted:
+            put(os.path.join(DOCS, "origin-map.md"), name, table())
 
 
 main()

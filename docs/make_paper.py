@@ -6,15 +6,16 @@
 The result is kept in runs/paper/, so that a second call only rewrites the page; delete that folder to measure anew. --set goes to
 the program (a smaller bed while working on this page). Needs nothing but Python's standard library.
 """
-import argparse
 import json
+import argparse
 import math
 import os
 import shutil
-import subprocess
 import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+import measured
+from measured import ROOT
+
 STUDY = "examples/03_paper_five_degrees.toml"
 MELT = ["--melt-depth", "100 um", "--melt-width", "120 um"]
 PICTURES = ("beds", "gi_map", "heap_velocity", "heap_mixing", "gi_line", "composition")
@@ -24,16 +25,10 @@ def measure(runs, sets, threads):
     """evaluation.json of the spread; runs it when it is not there yet."""
     kept = os.path.join(runs, "evaluation.json")
     if not os.path.exists(kept):
-        program = os.environ.get("GRADWRIGHT", "./gradwright")
-        command = [program, "evaluate", STUDY, "--composition", *MELT, "--figures", "--out", runs, "--force", "--json"]
-        for one in sets:
-            command += ["--set", one]
+        words = ["evaluate", STUDY, "--composition", *MELT, "--figures", "--out", runs, "--force", "--json", *measured.sets(sets)]
         if threads:
-            command += ["--threads", str(threads)]
-        print("running:", " ".join(command), file=sys.stderr, flush=True)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
-        if done.returncode != 0:
-            sys.exit(f"make_paper: the program ended with {done.returncode}")
+            words += ["--threads", str(threads)]
+        measured.said(words)
     with open(kept) as file:
         result = json.load(file)
     if result["status"] != "ok":
@@ -241,17 +236,11 @@ def main():
         source = os.path.join(runs, name + ".svg")
         if os.path.exists(source):
             shutil.copyfile(source, os.path.join(images, f"paper_{name}.svg"))
-    with open(given.page) as file:
-        text = file.read()
     parts = {"run": lambda: run_text(r, given.set), "summary": lambda: summary_text(r), "beds": lambda: beds_text(r),
              "map": lambda: map_text(r), "velocity": lambda: velocity_text(r), "mixing": lambda: mixing_text(r),
              "line": lambda: line_text(r), "melt": lambda: melt_text(r)}
     for name, part in parts.items():
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = text.split(begin)
-        text = head + begin + "\n" + part() + "\n" + end + rest.split(end)[1]
-    with open(given.page, "w") as file:
-        file.write(text)
+        measured.put(given.page, name, part())
 
 
 main()

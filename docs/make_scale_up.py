@@ -7,18 +7,14 @@
 hour more). Answers are kept in runs/scale-up/; delete one to measure it again. GRADWRIGHT in the environment names another
 program than ./gradwright. Needs nothing but Python's standard library.
 """
-import json
 import os
-import re
-import shlex
 import shutil
-import subprocess
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+import measured
+from measured import ROOT, shown
+
 RUNS = os.path.join(ROOT, "runs", "scale-up")
 PAGE = os.path.join(ROOT, "docs", "scale-up.md")
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 MACHINE = ["design", "examples/05_machine_bed.toml"]
 CHECK = [*MACHINE, "--set", 'scale_up.lengths=["1.6 mm", "3.2 mm", "6.4 mm", "12.8 mm", "25.6 mm"]']
 
@@ -26,19 +22,7 @@ CHECK = [*MACHINE, "--set", 'scale_up.lengths=["1.6 mm", "3.2 mm", "6.4 mm", "12
 def answer(name, words):
     out = os.path.join(RUNS, name)
     kept = os.path.join(out, "result.json")
-    if not os.path.exists(kept):
-        os.makedirs(RUNS, exist_ok=True)
-        command = [PROGRAM, *words, "--force", "--out", out]
-        print("running:", " ".join(command), file=sys.stderr, flush=True)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
-        if done.returncode not in (0, 4):
-            sys.exit(f"ended with exit code {done.returncode}")
-    with open(kept) as file:
-        return json.load(file), out
-
-
-def shown(words):
-    return "`./gradwright " + " ".join(shlex.quote(w) for w in words) + "`"
+    return measured.answer(kept, [*words, "--force", "--out", out], (0, 4), writes=True), out
 
 
 def law_line(heap):
@@ -53,7 +37,7 @@ def strips_table(name, words):
     a, out = answer(name, words)
     heap = a["extrapolated"]
     host = a["provenance"]["host"]
-    rows = [f"{shown(words)} ({host['threads']} threads, {host['isa']}; {a['seconds_cold']:.0f} s with an empty cache):\n",
+    rows = [f"`{shown(words)}` ({host['threads']} threads, {host['isa']}; {a['seconds_cold']:.0f} s with an empty cache):\n",
             "| dispenser mm | dosage factor | turnovers N | profile order | rest | drift order | captured f | lateral variance / D50² N | seconds |",
             "|---|---|---|---|---|---|---|---|---|"]
     for s in heap["strips"]:
@@ -69,22 +53,4 @@ def strips_table(name, words):
     return "\n".join(rows)
 
 
-TABLES = {"machine": MACHINE, "check": CHECK}
-
-
-def main():
-    wanted = sys.argv[1:] or list(TABLES)
-    for name in wanted:
-        if name not in TABLES:
-            sys.exit(f"no table '{name}'; there are {', '.join(TABLES)}")
-        table = strips_table(name, TABLES[name])
-        with open(PAGE) as file:
-            page = file.read()
-        mark = re.compile(rf"(<!-- {name}: begin -->\n).*?(<!-- {name}: end -->)", re.S)
-        if not mark.search(page):
-            sys.exit(f"{PAGE} has no place for the table '{name}'")
-        with open(PAGE, "w") as file:
-            file.write(mark.sub(lambda m: m.group(1) + table + "\n" + m.group(2), page))
-
-
-main()
+measured.fill(PAGE, {name: lambda name=name, words=words: strips_table(name, words) for name, words in (("machine", MACHINE), ("check", CHECK))})

@@ -1,22 +1,17 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/search.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_search.py [linear] [sigmoid]
+    python3 docs/make_search.py [linear] [sigmoid] [three]
 
 What `compare` answered is kept in docs/data/search-NAME.json, so that a second call only rewrites the page; delete a file to measure
-it again (about twenty minutes each on two free cores). GRADWRIGHT in the environment names another program than ./gradwright. Needs
+it again (about an hour each on one core). GRADWRIGHT in the environment names another program than ./gradwright. Needs
 nothing but Python's standard library.
 """
-import json
 import os
-import shlex
-import subprocess
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-PAGE = os.path.join(ROOT, "docs", "search.md")
-DATA = os.path.join(ROOT, "docs", "data")
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
+from measured import DOCS, ROOT, answer, fill, sets, shown
+
+PAGE = os.path.join(DOCS, "search.md")
 
 # A coupon of half the length and half the width of 01: some ten seconds a spread, so that plain methods can have the spreads they
 # need. The sides are a period, as there; bins of 0.1 mm.
@@ -25,35 +20,24 @@ SMALL = ["machine.dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"
          "target.bin_width=\"0.1 mm\"", "design_space.partition={family=\"polyline\", knots=5, monotone=false}",
          # a quarter of the grains: twice the noise, and the tolerances that go with it
          "objective.tolerance=0.08", "objective.x_drift_tolerance=0.2"]
-STUDIES = {"linear": ["target.from.y=\"0.2 mm\"", "target.to.y=\"0.6 mm\""],
-           "sigmoid": []}
-FILES = {"linear": "examples/01_linear_coupon.toml", "sigmoid": "examples/02_sigmoid_coupon.toml"}
-SIGMOID = ["target.centre=\"0.45 mm\"", "target.width_10_90=\"0.3 mm\"",
-           "machine={use=\"coupon-rig\", dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"}, "
-           "platform={length=\"1.6 mm\", width=\"0.8 mm\"}, land=\"2.4 mm\"}"]
-CALL = ["--strategies", "map,bobyqa,cobyla,crs,ceres,mf", "--budget", "20", "--confirmations", "3"]
+COUPON = ["machine={use=\"coupon-rig\", dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"}, "
+          "platform={length=\"1.6 mm\", width=\"0.8 mm\"}, land=\"2.4 mm\"}"]
+RAMP = ["target.from.y=\"0.2 mm\"", "target.to.y=\"0.6 mm\""]
+STUDIES = {
+    # name: study, its settings, evaluations a strategy
+    "linear": ("examples/01_linear_coupon.toml", SMALL + RAMP, 20),
+    "sigmoid": ("examples/02_sigmoid_coupon.toml",
+                COUPON + SMALL[4:] + ["target.centre=\"0.45 mm\"", "target.width_10_90=\"0.3 mm\""], 16),
+    # a plate that is there already: what remains are the dose and how much of it each chamber's own piston gives
+    "three": ("examples/01_linear_coupon.toml",
+              SMALL + RAMP + ["design_space.partition={family=\"straight\", angle=\"18 deg\", offset=\"0.05 mm\"}",
+                              "design_space.dosage_factor=[2.0, 4.5]", "design_space.dose={A=[0.7, 1.4], B=[0.7, 1.4]}"], 16)}
 
 
 def words(name):
-    settings = SMALL + STUDIES[name] if name == "linear" else SIGMOID + SMALL[4:]
-    out = ["compare", FILES[name], *CALL]
-    for setting in settings:
-        out += ["--set", setting]
-    return out
-
-
-def answer(name):
-    kept = os.path.join(DATA, f"search-{name}.json")
-    if not os.path.exists(kept):
-        command = [PROGRAM, *words(name), "--json", "--force", "--out", os.path.join(ROOT, "runs", f"search-{name}")]
-        print("running:", " ".join(map(shlex.quote, command)), file=sys.stderr, flush=True)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE)
-        if done.returncode not in (0, 4):
-            sys.exit(f"ended with exit code {done.returncode}")
-        with open(kept, "wb") as file:
-            file.write(done.stdout)
-    with open(kept) as file:
-        return json.load(file)
+    study, settings, budget = STUDIES[name]
+    return ["compare", study, "--strategies", "map,bobyqa,cobyla,crs,ceres,mf", "--budget", str(budget), "--confirmations", "3",
+            *sets(settings)]
 
 
 def objective(s):
@@ -66,8 +50,9 @@ def number(value, text="{:.3f}"):
 
 
 def table(name):
-    a = answer(name)
-    rows = ["```\n./gradwright " + " ".join(map(shlex.quote, words(name))) + "\n```\n",
+    a = answer(os.path.join(DOCS, "data", f"search-{name}.json"),
+               [*words(name), "--json", "--force", "--out", os.path.join(ROOT, "runs", f"search-{name}")], (0, 4))
+    rows = ["```\n" + shown(words(name)) + "\n```\n",
             "| strategy | spreads to its design | seconds | confirmed misfit | 95 % bounds | noise floor | x drift | objective | its own verdict | the judges' |",
             "|---|---|---|---|---|---|---|---|---|---|"]
     for s in a["strategies"]:
@@ -83,15 +68,4 @@ def table(name):
     return "\n".join(rows)
 
 
-def main():
-    with open(PAGE) as file:
-        text = file.read()
-    for name in sys.argv[1:] or list(STUDIES):
-        begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-        head, rest = text.split(begin)
-        text = head + begin + "\n" + table(name) + "\n" + end + rest.split(end)[1]
-        with open(PAGE, "w") as file:
-            file.write(text)
-
-
-main()
+fill(PAGE, {name: lambda name=name: table(name) for name in STUDIES})

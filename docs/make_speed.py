@@ -7,17 +7,13 @@ Answers are kept in runs/speed/, so that a second call only rewrites the page; d
 about twenty minutes on two free cores, `reduced` seven, `threads` a minute once its bed is cached, `sizes` some minutes. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
-import json
 import os
-import re
-import shlex
-import subprocess
-import sys
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+import measured
+from measured import ROOT, shown
+
 RUNS = os.path.join(ROOT, "runs", "speed")
 PAGE = os.path.join(ROOT, "docs", "speed-against-error.md")
-PROGRAM = os.environ.get("GRADWRIGHT", "./gradwright")
 
 # The first example at half its length: the finest level of the whole takes ten times as long as all of this table
 HALF = ["--set", 'machine.dispenser.length="1.6 mm"', "--set", 'machine.platform.length="1.6 mm"', "--set", 'machine.land="1.6 mm"',
@@ -34,28 +30,13 @@ LAMMPS = ["crosscheck", "lammps", "examples/01_linear_coupon.toml", "--speed", "
 
 def answer(name, words):
     kept = os.path.join(RUNS, name + ".json")
-    if not os.path.exists(kept):
-        os.makedirs(RUNS, exist_ok=True)
-        command = [PROGRAM, *words, "--json"]
-        if words[0] != "bench":
-            command += ["--force", "--out", os.path.join(RUNS, name)]
-        print("running:", " ".join(command), file=sys.stderr, flush=True)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE)
-        if done.returncode != 0:
-            sys.exit(f"ended with exit code {done.returncode}")
-        with open(kept, "wb") as file:
-            file.write(done.stdout)
-    with open(kept) as file:
-        return json.load(file)
-
-
-def shown(words):
-    return "`./gradwright " + " ".join(shlex.quote(w) for w in words) + "`"
+    out = [] if words[0] == "bench" else ["--force", "--out", os.path.join(RUNS, name)]
+    return measured.answer(kept, [*words, "--json", *out])
 
 
 def tradeoff_table(name, words):
     a = answer(name, words)
-    rows = [f"{shown(words)} ({a['seeds']} beds a level, {a['provenance']['host']['threads']} threads, {a['provenance']['host']['isa']}):\n",
+    rows = [f"`{shown(words)}` ({a['seeds']} beds a level, {a['provenance']['host']['threads']} threads, {a['provenance']['host']['isa']}):\n",
             "| level | grains | steps | awake grain-steps | seconds | speed-up | GI rms to the finest | noise floor | packing | largest overlap / r | |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for l in a["levels"]:
         if l["grains"] is None:
@@ -73,7 +54,7 @@ def tradeoff_table(name, words):
 
 def bench_table(name, words, by):
     a = answer(name, words)
-    rows = [f"{shown(words)} on {a['host']['cores']} cores, {a['host']['isa']}:\n",
+    rows = [f"`{shown(words)}` on {a['host']['cores']} cores, {a['host']['isa']}:\n",
             "| state | grains | threads | million grain-steps/s | a thread | bytes a grain | contacts a grain |", "|---|---|---|---|---|---|---|"]
     for c in a["cases"]:
         rows.append(f"| {c['name']} | {c['grains']} | {c['threads']} | {c['grain_steps_per_second'] / 1e6:.1f} | {c['grain_steps_per_second'] / 1e6 / c['threads']:.1f} | {c['bytes_per_grain']:.0f} | {c['contacts_per_grain']:.2f} |")
@@ -89,7 +70,7 @@ def bench_table(name, words, by):
 
 def lammps_table():
     a = answer("lammps", LAMMPS)
-    rows = [f"{shown(LAMMPS)} ({a['threads']} thread against {a['ranks']} rank of LAMMPS {a['lammps_version']}, {a['steps']} steps, {a['provenance']['instruction_set']}):\n",
+    rows = [f"`{shown(LAMMPS)}` ({a['threads']} thread against {a['ranks']} rank of LAMMPS {a['lammps_version']}, {a['steps']} steps, {a['provenance']['instruction_set']}):\n",
             "| state | grains | Gradwright, million grain-steps/s | LAMMPS | its best skin | ratio |", "|---|---|---|---|---|---|"]
     for c in a["speed"]:
         rows.append(f"| {c['name']} | {c['grains']} | {c['gradwright_grain_steps_per_second'] / 1e6:.1f} | {c['lammps_grain_steps_per_second'] / 1e6:.2f} | {c['lammps_best_skin_m'] * 1e6:.0f} um | {c['speed_ratio']:.1f} |")
@@ -97,21 +78,4 @@ def lammps_table():
 
 
 TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
-
-
-def main():
-    wanted = sys.argv[1:] or list(TABLES)
-    for name in wanted:
-        if name not in TABLES:
-            sys.exit(f"no table '{name}'; there are {', '.join(TABLES)}")
-        table = TABLES[name]()
-        with open(PAGE) as file:
-            page = file.read()
-        mark = re.compile(rf"(<!-- {name}: begin -->\n).*?(<!-- {name}: end -->)", re.S)
-        if not mark.search(page):
-            sys.exit(f"{PAGE} has no place for the table '{name}'")
-        with open(PAGE, "w") as file:
-            file.write(mark.sub(lambda m: m.group(1) + table + "\n" + m.group(2), page))
-
-
-main()
+measured.fill(PAGE, TABLES)
