@@ -9,6 +9,7 @@
 
 #include "optimise/motion.h"
 #include "reports/hdf5_file.h"
+#include "reports/layers_json.h"
 #include "reports/map_file.h"
 #include "reports/provenance.h"
 #include "reports/result_json.h"
@@ -294,6 +295,119 @@ void write_field(Table& table, H5Writer& file, const StudyResult& result) {
     }
 }
 
+/// /layers: one row a layer, means over the confirmations; nothing where the study lays one.
+void write_layers(Table& table, H5Writer& file, const Study& study, const StudyResult& result,
+                  std::size_t bins) {
+    const std::vector<LaidLayer> layers = mean_layers(study, result);
+    if (layers.empty()) return;
+    const auto column = [&](const char* name, const char* units, const char* long_name, auto of) {
+        std::vector<double> values;
+        for (const LaidLayer& layer : layers) values.push_back(of(layer));
+        table.numbers(std::string("/layers/") + name, values, units, long_name);
+    };
+    const auto rows = [&](const char* name, const char* long_name, auto of) {
+        std::vector<double> values;
+        for (const LaidLayer& layer : layers) {
+            const std::vector<double> row = padded(of(layer), bins);
+            values.insert(values.end(), row.begin(), row.end());
+        }
+        const std::string path = std::string("/layers/") + name;
+        table.grid(path, values, {layers.size(), bins}, "1", long_name);
+        file.attach_scale(path, "/bins/y_m", 1);
+    };
+    std::vector<std::int64_t> number, judged;
+    for (const LaidLayer& layer : layers) {
+        number.push_back(layer.number);
+        judged.push_back(judged_number(study) == 0 || judged_number(study) == layer.number);
+    }
+    table.integers("/layers/number", number, "1", "layer, from 1");
+    table.integers("/layers/judged", judged, "1", "1: the verdict is about it");
+    rows("gi", "GI(y)", [](const LaidLayer& l) { return l.profile.gi; });
+    rows("standard_error", "standard error of it",
+         [](const LaidLayer& l) { return l.profile.standard_error; });
+    rows("x_drift", "GI in the last third minus the first third",
+         [](const LaidLayer& l) { return l.drift.difference; });
+    column("misfit", "1", "misfit", [](const LaidLayer& l) { return l.misfit.value; });
+    column("misfit_noise_floor", "1", "its noise floor",
+           [](const LaidLayer& l) { return l.misfit.noise_floor; });
+    column("drift_misfit", "1", "x drift over the bins",
+           [](const LaidLayer& l) { return l.drift_misfit.value; });
+    column("gap", "m", "gap under the blade", [](const LaidLayer& l) { return l.gap; });
+    column("dosed_solid", "m3", "solid volume of a dose",
+           [](const LaidLayer& l) { return l.dosed_solid_volume; });
+    column("raised_solid", "m3", "solid volume over the rim before the pass",
+           [](const LaidLayer& l) { return l.raised_solid_volume; });
+    column("laid_solid", "m3", "solid volume laid", [](const LaidLayer& l) { return l.laid_solid_volume; });
+    column("carried_off_solid", "m3", "solid volume carried off layers below",
+           [](const LaidLayer& l) { return l.carried_off_solid_volume; });
+    column("capture_fraction", "1", "solid laid over solid dosed",
+           [](const LaidLayer& l) { return l.capture_fraction; });
+    column("coverage", "1", "share of cells deeper than half the mean",
+           [](const LaidLayer& l) { return l.coverage; });
+    column("waste_fraction", "1", "overflow over dosed solid",
+           [](const LaidLayer& l) { return l.waste_fraction; });
+    column("packing_fraction", "1", "packing of the layer",
+           [](const LaidLayer& l) { return l.packing_fraction; });
+}
+
+/// /extrapolated: the strips that a larger machine's design rests on, one row each; nothing for a design that
+/// was spread itself.
+void write_extrapolated(Table& table, const StudyResult& result) {
+    if (!result.extrapolated) return;
+    const ScaledHeap& heap = *result.extrapolated;
+    const auto column = [&](const char* name, const char* units, const char* long_name, auto of) {
+        std::vector<double> values;
+        for (const HeapOrder& strip : heap.strips) values.push_back(of(strip));
+        table.numbers(std::string("/extrapolated/") + name, values, units, long_name);
+    };
+    column("dispenser_length", "m", "dispenser of the strip",
+           [](const HeapOrder& s) { return s.dispenser_length; });
+    column("dosage_factor", "1", "dosage factor of the strip",
+           [](const HeapOrder& s) { return s.dosage_factor; });
+    column("strip_turnovers", "1", "turnovers of its heap on the way to the part",
+           [](const HeapOrder& s) { return s.turnovers; });
+    column("profile_order", "1", "order of W, the share of a label laid",
+           [](const HeapOrder& s) { return s.profile; });
+    column("profile_rest", "1", "what one mode leaves of it",
+           [](const HeapOrder& s) { return s.profile_rest; });
+    column("drift_order", "1", "order of the drift of W", [](const HeapOrder& s) { return s.drift; });
+    column("lateral", "1", "variance of the lateral way over D50^2 and turnovers",
+           [](const HeapOrder& s) { return s.lateral; });
+    column("capture_fraction", "1", "solid laid over solid dosed",
+           [](const HeapOrder& s) { return s.capture_fraction; });
+    std::vector<std::int64_t> seeds;
+    std::vector<double> share, drift;
+    for (const HeapOrder& strip : heap.strips) {
+        seeds.push_back(static_cast<std::int64_t>(strip.seed));
+        share.insert(share.end(), strip.share.begin(), strip.share.end());
+        drift.insert(drift.end(), strip.share_drift.begin(), strip.share_drift.end());
+    }
+    table.integers("/extrapolated/seed", seeds, "1", "seed of the strip");
+    const std::size_t places = heap.strips.empty() ? 0 : share.size() / heap.strips.size();
+    if (places > 0) {
+        table.grid("/extrapolated/share", share, {heap.strips.size(), places}, "1",
+                   "W(xi) - xi, xi = 1/40 .. 39/40");
+        table.grid("/extrapolated/share_drift", drift,
+                   {heap.strips.size(), drift.size() / heap.strips.size()}, "1", "its change along the part");
+    }
+    const struct {
+        const char *name, *units, *long_name;
+        double value;
+    } scalars[] = {
+        {"turnovers", "1", "turnovers of the machine's heap", heap.turnovers},
+        {"length", "m", "the machine's dispenser", heap.length},
+        {"longest", "m", "longest dispenser that was spread", heap.longest},
+        {"profile_step", "1", "W's rms change over the last step in length", heap.profile_step},
+        {"drift_step", "1", "its drift's", heap.drift_step},
+        {"dose_step", "1", "W's largest rms difference between doses", heap.dose_step},
+        {"profile_error", "1", "carried by the design's GI(y), rms over a ramp", heap.profile_error},
+        {"drift_error", "1", "carried by its x drift", heap.drift_error}};
+    for (const auto& scalar : scalars)
+        table.scalar(std::string("/extrapolated/") + scalar.name, scalar.value, scalar.units,
+                     scalar.long_name);
+    table.texts("/extrapolated/rests_on", heap.rests_on, "what the extrapolation rests on");
+}
+
 void write_result(Table& table, H5Writer& file, const Study& study, const StudyResult& result,
                   std::size_t bins) {
     const std::string root = "/result/";
@@ -424,6 +538,8 @@ void write_results_file(const Study& study, const StudyResult& result, const std
         write_evaluations(table, file, result, axis, y.size());
         write_history(table, file, result, axis);
         write_result(table, file, study, result, y.size());
+        write_layers(table, file, study, result, y.size());
+        write_extrapolated(table, result);
         write_provenance(table, result);
         file.flush();
     });

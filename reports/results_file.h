@@ -6,6 +6,8 @@
 //   /evaluations/*                    one row each: kinematic, straight, predicted, confirmations
 //   /history/*                        the search, one row per step
 //   /result/*                         target, confirmed profile and band, drift, map, partition, scalars
+//   /layers/*                         one row a layer, where several are laid: profile, misfit, volumes
+//   /extrapolated/*                   strips and carried errors of a design for a machine nobody spread
 //   /provenance/*                     version, compiler, host, seed, termination
 #pragma once
 #include <string>

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/hdf5_file.h"
+#include "reports/layers_json.h"
 #include "reports/map_file.h"
 #include "reports/output_folder.h"
 #include "reports/particle_file.h"
@@ -94,6 +95,62 @@ TEST_F(Files, bins_and_variables_are_dimension_scales) {
     // kinematic, straight, predicted and one row per confirmation
     EXPECT_EQ(found.at("evaluations/profile").shape[0], 3 + result.confirmations.size());
     EXPECT_EQ(found.at("evaluations/profile").shape[1], static_cast<hsize_t>(study.bins.count));
+}
+
+std::vector<double> column(const std::string& file_name, const char* path, std::size_t size) {
+    const H5Handle file(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open");
+    std::vector<double> values(size);
+    EXPECT_GE(H5LTread_dataset_double(file, path, values.data()), 0) << path;
+    return values;
+}
+
+TEST_F(Files, layers_and_the_strips_of_an_extrapolation_have_rows_of_their_own) {
+    Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    write_results_file(study, result, path("one.h5"));
+    for (const auto& [name, facts] : datasets(path("one.h5")))
+        EXPECT_FALSE(name.starts_with("layers/") || name.starts_with("extrapolated/")) << name;
+
+    study.scene.layers = 2;
+    for (Evaluation& confirmation : result.confirmations)
+        for (const int number : {1, 2}) {
+            LaidLayer layer;
+            layer.number = number;
+            layer.profile = confirmation.profile;
+            for (double& gi : layer.profile.gi) gi *= 0.5 * number;
+            layer.drift = confirmation.drift;
+            layer.dosed_solid_volume = 1e-11 * number;
+            confirmation.layers.push_back(layer);
+        }
+    ScaledHeap heap;
+    for (const double length : {3.2e-3, 6.4e-3}) {
+        HeapOrder strip;
+        strip.dispenser_length = length;
+        strip.share = std::vector<double>(39, length);
+        strip.share_drift = std::vector<double>(39, -length);
+        heap.strips.push_back(strip);
+    }
+    heap.profile_error = 0.06;
+    heap.rests_on = {"dispenser length"};
+    result.extrapolated = heap;
+    write_results_file(study, result, path("two.h5"));
+    const auto found = datasets(path("two.h5"));
+    const auto bins = static_cast<hsize_t>(study.bins.count);
+    EXPECT_EQ(found.at("layers/gi").shape, (std::vector<hsize_t>{2, bins}));
+    EXPECT_EQ(found.at("layers/gi").scales, 1);
+    EXPECT_EQ(found.at("extrapolated/share").shape, (std::vector<hsize_t>{2, 39}));
+    for (const auto& [name, facts] : found) EXPECT_TRUE(facts.units && facts.long_name) << name;
+    EXPECT_THAT(column(path("two.h5"), "/layers/judged", 2), testing::ElementsAre(0, 1));  // the last
+    EXPECT_THAT(column(path("two.h5"), "/layers/dosed_solid", 2),
+                testing::Pointwise(testing::DoubleNear(1e-20), {1e-11, 2e-11}));
+    const std::vector<double> gi = column(path("two.h5"), "/layers/gi", 2 * bins);
+    const std::vector<double> last = mean_layers(study, result).at(1).profile.gi;
+    EXPECT_DOUBLE_EQ(gi[bins + 2], last[2]);
+    EXPECT_DOUBLE_EQ(gi[2], 0.5 * last[2]);
+    EXPECT_THAT(column(path("two.h5"), "/extrapolated/dispenser_length", 2),
+                testing::ElementsAre(3.2e-3, 6.4e-3));
+    EXPECT_EQ(column(path("two.h5"), "/extrapolated/share_drift", 78)[50], -6.4e-3);
+    EXPECT_EQ(column(path("two.h5"), "/extrapolated/profile_error", 1)[0], 0.06);
 }
 
 TEST_F(Files, a_search_that_failed_still_gives_every_file) {
