@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/search.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_search.py [linear] [sigmoid] [three]
+    python3 docs/make_search.py [linear] [sigmoid] [three]            # tables; measures what is missing
+    python3 docs/make_search.py --kept                                # tables of what was measured
+    python3 docs/make_search.py --only STRATEGY linear|sigmoid|three  # measures one strategy, writes no table
 
-What `compare` answered is kept in docs/data/search-NAME.json, so that a second call only rewrites the page; delete a file to measure
-it again (about an hour each on one core). GRADWRIGHT in the environment names another program than ./gradwright. Needs
+What `compare` answered is kept in docs/data/search-NAME-STRATEGY.json, so that a second call only rewrites the page; delete a file to
+measure it again (about ten minutes each on one core). A strategy's numbers do not depend on those beside it: start, bed and judges
+come from the study's seed. GRADWRIGHT in the environment names another program than ./gradwright. Needs
 nothing but Python's standard library.
 """
 import os
+import sys
 
 from measured import DOCS, ROOT, answer, fill, sets, shown
 
@@ -23,6 +27,7 @@ SMALL = ["machine.dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"
 COUPON = ["machine={use=\"coupon-rig\", dispenser={length=\"1.6 mm\", width=\"0.8 mm\", depth=\"1 mm\"}, "
           "platform={length=\"1.6 mm\", width=\"0.8 mm\"}, land=\"2.4 mm\"}"]
 RAMP = ["target.from.y=\"0.2 mm\"", "target.to.y=\"0.6 mm\""]
+STRATEGIES = ("map", "bobyqa", "cobyla", "crs", "ceres", "mf")
 STUDIES = {
     # name: study, its settings, evaluations a strategy
     "linear": ("examples/01_linear_coupon.toml", SMALL + RAMP, 20),
@@ -34,9 +39,9 @@ STUDIES = {
                               "design_space.dosage_factor=[2.0, 4.5]", "design_space.dose={A=[0.7, 1.4], B=[0.7, 1.4]}"], 16)}
 
 
-def words(name):
+def words(name, strategies=STRATEGIES):
     study, settings, budget = STUDIES[name]
-    return ["compare", study, "--strategies", "map,bobyqa,cobyla,crs,ceres,mf", "--budget", str(budget), "--confirmations", "3",
+    return ["compare", study, "--strategies", ",".join(strategies), "--budget", str(budget), "--confirmations", "3",
             *sets(settings)]
 
 
@@ -49,15 +54,23 @@ def number(value, text="{:.3f}"):
     return "" if value is None else text.format(value)
 
 
+def measured(name, strategy):
+    """What came of one strategy; None when it was not measured and is not to be."""
+    kept = os.path.join(DOCS, "data", f"search-{name}-{strategy}.json")
+    if not os.path.exists(kept) and "--kept" in sys.argv:
+        return None
+    out = os.path.join(ROOT, "runs", f"search-{name}-{strategy}")
+    return answer(kept, [*words(name, (strategy,)), "--json", "--force", "--out", out], (0, 4))["strategies"][0]
+
+
 def table(name):
-    a = answer(os.path.join(DOCS, "data", f"search-{name}.json"),
-               [*words(name), "--json", "--force", "--out", os.path.join(ROOT, "runs", f"search-{name}")], (0, 4))
     rows = ["```\n" + shown(words(name)) + "\n```\n",
             "| strategy | spreads to its design | seconds | confirmed misfit | 95 % bounds | noise floor | x drift | objective | its own verdict | the judges' |",
             "|---|---|---|---|---|---|---|---|---|---|"]
-    for s in a["strategies"]:
-        if s["confirmed_misfit"] is None and not s["spreads"]:
-            rows.append(f"| `{s['name']}` | not run | | | | | | | | |")
+    for strategy in STRATEGIES:
+        s = measured(name, strategy)
+        if s is None:
+            rows.append(f"| `{strategy}` | not measured | | | | | | | | |")
             continue
         if s["confirmed_misfit"] is None:
             rows.append(f"| `{s['name']}` | {s['spreads']} | {number(s['seconds_cold'], '{:.0f}')} | | | | | | {s['termination']}: {s['reason']} | |")
@@ -68,4 +81,8 @@ def table(name):
     return "\n".join(rows)
 
 
-fill(PAGE, {name: lambda name=name: table(name) for name in STUDIES})
+if "--only" in sys.argv:
+    strategy, name = sys.argv[sys.argv.index("--only") + 1:]
+    measured(name, strategy)
+else:
+    fill(PAGE, {name: lambda name=name: table(name) for name in STUDIES})
