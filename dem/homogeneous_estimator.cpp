@@ -113,8 +113,14 @@ std::vector<BinMoments> moments_of(const PooledGrains& grains, LabelShares& shar
         shares.of_grain(grains.origin_x[i], grains.way[i], share);
         const double along = (grains.deposit_x[i] - grains.x_low) / (grains.x_high - grains.x_low);
         const int cell = grains.layer[i] * cuts + std::min(cuts - 1, static_cast<int>(along * cuts));
+        const double volume = grains.volume[i];
         for (int bin = 0; bin < bins.count; ++bin) {
-            moments[bin].add(cell, grains.deposit_x[i], grains.volume[i], share[bin]);
+            if (grains.carries_a.empty())
+                moments[bin].add(cell, grains.deposit_x[i], volume, share[bin]);
+            else if (grains.carries_a[i])
+                moments[bin].add(cell, grains.deposit_x[i], volume * share[bin], 1);
+            else
+                moments[bin].add(cell, grains.deposit_x[i], volume * (1 - share[bin]), 0);
         }
     }
     return moments;
@@ -126,13 +132,20 @@ BlockTrend trend_of(const PooledGrains& grains) {
 
 /// Means of every bin without moments: the fast path of a search.
 std::vector<double> means_of(const PooledGrains& grains, LabelShares& shares, const BinGrid& bins) {
-    std::vector<double> mean(bins.count, 0), share(bins.count);
+    std::vector<double> mean(bins.count, 0), share(bins.count), of_b(bins.count, 0);
+    const bool by_powder = !grains.carries_a.empty();
     for (std::size_t i = 0; i < grains.size(); ++i) {
         shares.of_grain(grains.origin_x[i], grains.way[i], share);
-        for (int bin = 0; bin < bins.count; ++bin) mean[bin] += grains.volume[i] * share[bin];
+        if (!by_powder || grains.carries_a[i])
+            for (int bin = 0; bin < bins.count; ++bin) mean[bin] += grains.volume[i] * share[bin];
+        else
+            for (int bin = 0; bin < bins.count; ++bin) of_b[bin] += grains.volume[i] * (1 - share[bin]);
     }
-    const double total = grains.total_volume();
-    for (double& m : mean) m = total > 0 ? m / total : kNan;
+    const double all = grains.total_volume();
+    for (int bin = 0; bin < bins.count; ++bin) {
+        const double total = by_powder ? mean[bin] + of_b[bin] : all;
+        mean[bin] = total > 0 ? mean[bin] / total : kNan;
+    }
     return mean;
 }
 
@@ -176,19 +189,91 @@ PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_h
     return pooled;
 }
 
-PooledGrains part_of(const PooledGrains& grains, double x_low, double x_high) {
+namespace {
+
+/// Share of the width on A's side of the dispenser's x, by a table over its length.
+class SideShare {
+  public:
+    SideShare(const PartitionCurve& partition, double length, double width) : length_(length) {
+        constexpr int kColumns = 256, kRows = 128;
+        for (int column = 0; column <= kColumns; ++column) {
+            int above = 0;
+            for (int row = 0; row < kRows; ++row)
+                above += partition.on_side_a(length * column / kColumns, width * (row + 0.5) / kRows);
+            share_.push_back(static_cast<double>(above) / kRows);
+        }
+    }
+    double at(double x) const {
+        const auto last = static_cast<double>(share_.size() - 1);
+        const double place = std::clamp(x / length_, 0.0, 1.0) * last;
+        const double k = std::min(std::floor(place), last - 1);
+        const auto left = static_cast<std::size_t>(k);
+        return share_[left] + (place - k) * (share_[left + 1] - share_[left]);
+    }
+
+  private:
+    double length_;
+    std::vector<double> share_;
+};
+
+template <class Take>
+PooledGrains only(const PooledGrains& grains, Take&& take) {
     PooledGrains part;
-    part.x_low = x_low;
-    part.x_high = x_high;
+    part.x_low = grains.x_low;
+    part.x_high = grains.x_high;
     part.layers = grains.layers;
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        if (!(grains.deposit_x[i] >= x_low && grains.deposit_x[i] < x_high)) continue;
+        if (!take(i)) continue;
         part.origin_x.push_back(grains.origin_x[i]);
         part.way.push_back(grains.way[i]);
         part.deposit_x.push_back(grains.deposit_x[i]);
         part.volume.push_back(grains.volume[i]);
         part.layer.push_back(grains.layer[i]);
+        if (!grains.carries_a.empty()) part.carries_a.push_back(grains.carries_a[i]);
     }
+    return part;
+}
+
+}  // namespace
+
+PooledGrains pool_powders(std::span<const Layer> layers, std::span<const BedPowders> beds, double x_low,
+                          double x_high) {
+    PooledGrains pooled = pool_grains(layers, x_low, x_high);
+    double width[2] = {0, 0};  // of all beds in which B, A stood
+    for (std::size_t l = 0; l < layers.size(); ++l)
+        for (const bool a : {false, true})
+            if (beds[l].both() || beds[l].a == a) width[a] += layers[l].width;
+    std::size_t k = 0;
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        const Layer& layer = layers[l];
+        std::optional<SideShare> side;
+        if (beds[l].both()) side.emplace(beds[l].partition, layer.dispenser_length, layer.width);
+        for (std::size_t i = 0; i < layer.size(); ++i) {
+            if (!(layer.deposit_x[i] >= x_low && layer.deposit_x[i] < x_high)) continue;
+            const bool a = side ? layer.is_a[i] != 0 : beds[l].a;
+            double share = 1;
+            if (side) {
+                const double above = side->at(layer.origin_x[i]);
+                share = std::max(a ? above : 1 - above, kLeastShare);
+            }
+            pooled.volume[k++] /= share * width[a];
+            pooled.carries_a.push_back(a);
+        }
+    }
+    return pooled;
+}
+
+PooledGrains powder_of(const PooledGrains& grains, bool a) {
+    PooledGrains part = only(grains, [&](std::size_t i) { return (grains.carries_a[i] != 0) == a; });
+    part.carries_a.clear();
+    return part;
+}
+
+PooledGrains part_of(const PooledGrains& grains, double x_low, double x_high) {
+    PooledGrains part = only(
+        grains, [&](std::size_t i) { return grains.deposit_x[i] >= x_low && grains.deposit_x[i] < x_high; });
+    part.x_low = x_low;
+    part.x_high = x_high;
     return part;
 }
 

@@ -16,10 +16,17 @@
 // in the partition.
 //   K(u) = 10 s^3 - 15 s^4 + 6 s^5, s = (1 + u)/2, on [-1, 1]: a quintic step, C2; I(u) = 5 s^4 - 6 s^5 + 2
 //   s^6, C3.
-// A step of finite support was taken rather than a Gaussian: a grain is certain outside |u| < 1, so that only
-// the one or two bins its step falls into cost anything with derivatives. yc' is interpolated between the
-// middles of the segments: with the slope of the segment itself H_i would jump when a knot passes over a
-// grain, and the profile with it.
+// Powders that move differently in one heap. A spread with both tells how A's grains move and how B's, each
+// only from its own side of that spread's partition. Weighed by the share r(x) of the dispenser's width that
+// its powder took up where it came from, w_i = V_i / r(origin_x_i), the grains of a powder stand for a
+// dispenser full of it, and
+//   GI_b = N_A / (N_A + N_B),   N_A = sum_A w_i <label_i>_b,   N_B = sum_B w_i (1 - <label_i>_b)
+// answers every other partition: each powder moves as it does beside the other, wherever the border between
+// them is (what the border does to the heap as a whole is left out). r below kLeastShare counts as that: one
+// grain must not stand for a stretch of which nothing is known. A step of finite support was taken rather
+// than a Gaussian: a grain is certain outside |u| < 1, so that only the one or two bins its step falls into
+// cost anything with derivatives. yc' is interpolated between the middles of the segments: with the slope of
+// the segment itself H_i would jump when a knot passes over a grain, and the profile with it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -40,7 +47,9 @@ struct PooledGrains {
     std::vector<double> deposit_x;  ///< [m]
     std::vector<double> volume;     ///< [m3]
     std::vector<int> layer;         ///< index of the layer it came from
-    double x_low = 0, x_high = 0;   ///< range of deposit_x taken, half-open [m]
+    /// Empty: a grain's label is where it came from. Else 1 a grain of A, 0 of B, and `volume` is its w [m2].
+    std::vector<std::uint8_t> carries_a;
+    double x_low = 0, x_high = 0;  ///< range of deposit_x taken, half-open [m]
     int layers = 0;
 
     std::size_t size() const { return volume.size(); }
@@ -49,10 +58,26 @@ struct PooledGrains {
     /// among strips is no replicate of them.
     bool replicates() const;
 };
+/// What stood in the bed of a layer that is read powder by powder: both powders on the sides of a partition,
+/// or one of them alone.
+struct BedPowders {
+    PartitionCurve partition;  ///< no points: one powder
+    bool a = true;             ///< which
+    bool both() const { return !partition.points.empty(); }
+};
+/// Least share of the dispenser's width that a powder is taken to have had [-].
+inline constexpr double kLeastShare = 0.1;
+
 /// Grains with deposit_x in [x_low, x_high). `share`: what each layer counts in the pool, whatever it holds
 /// [-], sum 1; layers with share 0 are left out. Empty: every grain by its volume.
 PooledGrains pool_grains(std::span<const Layer> layers, double x_low, double x_high,
                          std::span<const double> share = {});
+/// The same, powder by powder: `beds` tells what each layer was laid from. Where a powder stood in several
+/// beds, each counts by its width.
+PooledGrains pool_powders(std::span<const Layer> layers, std::span<const BedPowders> beds, double x_low,
+                          double x_high);
+/// The grains of one powder of such a pool, read by where they came from.
+PooledGrains powder_of(const PooledGrains& grains, bool a);
 /// Those of `grains` with deposit_x in [x_low, x_high).
 PooledGrains part_of(const PooledGrains& grains, double x_low, double x_high);
 

@@ -149,6 +149,23 @@ std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const
             starts.push_back({family.orientation(), moved, {}});
         }
     };
+    const auto add_around = [&](std::vector<PlanPoint> given) {
+        const bool runs_back = given.front().x > given.back().x;
+        if (runs_back) std::reverse(given.begin(), given.end());
+        const PartitionFamily family(space, length, width, {!runs_back, given.back().y > given.front().y});
+        std::vector<PlanPoint> samples;
+        for (std::size_t k = 0; k + 1 < given.size(); ++k)
+            for (int i = 0; i < 50; ++i) {
+                const double t = (i + 0.5) / 50;
+                samples.push_back({given[k].x + t * (given[k + 1].x - given[k].x),
+                                   given[k].y + t * (given[k + 1].y - given[k].y)});
+            }
+        add(family, family.fit_samples(samples));
+    };
+    if (options.near.size() >= 2) {
+        add_around(options.near);
+        return starts;
+    }
     const bool above = stands_above(study, space);
     for (const bool rising :
          {!above, above}) {  // A on the platform side first, then on the dispenser's back side
@@ -167,27 +184,14 @@ std::vector<Start> starts_of(const Study& study, const DesignSpace& space, const
             const PartitionFamily family(space, length, width, {above, !above});
             add(family, family.fit_samples(closed_form_curve(study, family.orientation(), quantile, fold)));
         }
-    if (space.given_points.size() >= 2) {
-        std::vector<PlanPoint> given = space.given_points;
-        const bool runs_back = given.front().x > given.back().x;
-        if (runs_back) std::reverse(given.begin(), given.end());
-        const PartitionFamily family(space, length, width, {!runs_back, given.back().y > given.front().y});
-        std::vector<PlanPoint> samples;
-        for (std::size_t k = 0; k + 1 < given.size(); ++k)
-            for (int i = 0; i < 50; ++i) {
-                const double t = (i + 0.5) / 50;
-                samples.push_back({given[k].x + t * (given[k + 1].x - given[k].x),
-                                   given[k].y + t * (given[k + 1].y - given[k].y)});
-            }
-        add(family, family.fit_samples(samples));
-    }
+    if (space.given_points.size() >= 2) add_around(space.given_points);
     return starts;
 }
 
 }  // namespace
 
 FitProblem::FitProblem(const Study& study, const Design& design, std::span<const Layer> layers,
-                       std::span<const double> share)
+                       std::span<const double> share, std::span<const BedPowders> beds)
     : bins(study.bins),
       target(study.target.is_field() ? field_targets(study) : bin_targets(study)),
       weight(study.target.is_field() ? field_weights(study) : bin_weights(study)),
@@ -198,8 +202,15 @@ FitProblem::FitProblem(const Study& study, const Design& design, std::span<const
       x_drift_weight(study.objective.x_drift_weight) {
     const Footprint footprint = footprint_of(study, design);
     motion = motion_values(study, design);
-    grains = pool_grains(layers, footprint.x_low, footprint.x_high, share);
+    grains = beds.empty() ? pool_grains(layers, footprint.x_low, footprint.x_high, share)
+                          : pool_powders(layers, beds, footprint.x_low, footprint.x_high);
     thirds = thirds_of(grains);
+    if (!beds.empty())
+        for (const bool a : {true, false}) {
+            const PooledGrains one = powder_of(grains, a);
+            powders.push_back({study.target.is_field() ? columns_of(one, study.columns) : std::vector{one},
+                               thirds_of(one)});
+        }
     if (!study.target.is_field()) {
         columns = {grains};
         return;

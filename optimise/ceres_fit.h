@@ -30,6 +30,12 @@ struct FitProblem {
     PooledGrains grains;
     std::vector<PooledGrains> columns;  ///< of a field; else `grains` alone
     Thirds thirds;
+    /// Where the map is read powder by powder: the grains of A and those of B, apart. Else empty.
+    struct OnePowder {
+        std::vector<PooledGrains> columns;
+        Thirds thirds;
+    };
+    std::vector<OnePowder> powders;
     BinGrid bins;
     std::vector<double> target, weight;              ///< per bin of each column [-]
     std::vector<double> drift_target, drift_weight;  ///< per bin [-]
@@ -39,9 +45,10 @@ struct FitProblem {
     MotionValues motion = {};   ///< the design's, for constraints that name it
 
     /// `layers` = the map, footprint shifted as `design` says; targets and weights of the study.
-    /// `share` as in pool_grains.
+    /// `share` as in pool_grains; `beds`, where there are any, as in pool_powders: pure powders, level
+    /// chambers.
     FitProblem(const Study& study, const Design& design, std::span<const Layer> layers,
-               std::span<const double> share = {});
+               std::span<const double> share = {}, std::span<const BedPowders> beds = {});
     bool usable() const;  ///< grains in the footprint and at least one counting bin
 
     /// Residual vector as above, for T = double or ceres::Jet. `smoothing` = half width of the label kernel
@@ -54,6 +61,14 @@ struct FitProblem {
     template <class T>
     void gradation(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
                    std::vector<T>& difference) const;
+    /// Share of every bin on A's side, of these grains.
+    template <class T>
+    std::vector<T> side_share(const PartitionFamily& family, const T* p, double smoothing,
+                              const PooledGrains& pool) const;
+    /// GI of every bin from the grains of A and of B (homogeneous_estimator.h).
+    template <class T>
+    std::vector<T> gi_of_powders(const PartitionFamily& family, const T* p, double smoothing,
+                                 const PooledGrains& of_a, const PooledGrains& of_b) const;
     /// sqrt(m^2 + x_drift_weight d^2 + unsound) with hard labels and the norm asked for [-].
     double hard_objective(const PartitionFamily& family, std::span<const double> p) const;
     /// (m, d) of the above.
@@ -72,6 +87,9 @@ struct FitOptions {
     int perturbed_starts = 6;      ///< around each closed-form start
     double perturbation = 0.2;     ///< half width, in parameters without unit
     int polish_evaluations = 400;  ///< NLopt on hard labels, for norms other than rmse; 0 = none
+    /// Where not empty: starts at this curve and closely around it alone. What was learned of one curve says
+    /// little of another that is built the other way round.
+    std::vector<PlanPoint> near = {};
     std::uint64_t seed = 1;
     std::function<bool()> stop;  ///< looked at between starts
 };
@@ -98,10 +116,49 @@ FitResult fit_partition(const Study& study, const DesignSpace& space, const Desi
                         const FitProblem& problem, const FitOptions& options);
 
 template <class T>
+std::vector<T> FitProblem::side_share(const PartitionFamily& family, const T* p, double smoothing,
+                                      const PooledGrains& pool) const {
+    std::vector<T> sum(bins.count, T(0.0)), part;
+    family.visit_curves(p, [&](const auto& curve, double sign) {
+        smooth_profile_above<T>(pool, curve, bins, smoothing, part);
+        for (std::size_t b = 0; b < part.size(); ++b) sum[b] += sign * part[b];
+    });
+    if (!family.orientation().a_above)
+        for (T& share : sum) share = T(1.0 - share);
+    return sum;
+}
+
+template <class T>
+std::vector<T> FitProblem::gi_of_powders(const PartitionFamily& family, const T* p, double smoothing,
+                                         const PooledGrains& of_a, const PooledGrains& of_b) const {
+    std::vector<T> gi = side_share<T>(family, p, smoothing, of_a);
+    const std::vector<T> share_b = side_share<T>(family, p, smoothing, of_b);
+    const double all_a = of_a.total_volume(), all_b = of_b.total_volume();
+    for (std::size_t b = 0; b < gi.size(); ++b) {
+        const T a = all_a * gi[b], sum = a + all_b * (1.0 - share_b[b]);
+        gi[b] = sum > 0.0 ? T(a / sum) : T(0.0);
+    }
+    return gi;
+}
+
+template <class T>
 void FitProblem::gradation(const PartitionFamily& family, const T* p, double smoothing, std::vector<T>& gi,
                            std::vector<T>& difference) const {
     gi.clear();
     difference.clear();
+    if (!powders.empty()) {
+        const OnePowder &a = powders[0], &b = powders[1];
+        for (std::size_t column = 0; column < a.columns.size(); ++column) {
+            const std::vector<T> part =
+                gi_of_powders<T>(family, p, smoothing, a.columns[column], b.columns[column]);
+            gi.insert(gi.end(), part.begin(), part.end());
+        }
+        if (thirds.first.size() == 0 || thirds.last.size() == 0) return;
+        difference = gi_of_powders<T>(family, p, smoothing, a.thirds.last, b.thirds.last);
+        const std::vector<T> before = gi_of_powders<T>(family, p, smoothing, a.thirds.first, b.thirds.first);
+        for (std::size_t bin = 0; bin < before.size(); ++bin) difference[bin] -= before[bin];
+        return;
+    }
     std::vector<T> profile, first, last;
     const auto add = [](std::vector<T>& sum, const std::vector<T>& part, double sign) {
         if (sum.empty())

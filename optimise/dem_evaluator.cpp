@@ -32,14 +32,7 @@ double stray_labels(const Layer& layer, const PartitionCurve& partition, const C
 /// latter are part of the former's grains, so the plain bins' variance is about that of the difference.
 double agreement(const std::vector<double>& plain, const std::vector<double>& plain_error,
                  const std::vector<double>& all, const std::vector<double>& weight) {
-    std::vector<double> a, b, variance;
-    for (std::size_t k = 0; k < weight.size(); ++k) {
-        if (!(weight[k] > 0) || !std::isfinite(plain[k] + plain_error[k] + all[k])) continue;
-        a.push_back(plain[k]);
-        b.push_back(all[k]);
-        variance.push_back(plain_error[k] * plain_error[k]);
-    }
-    return a.empty() ? 1 : equality_p_value(a, b, variance, std::vector<double>(a.size(), 0.0));
+    return bins_p_value(plain, plain_error, all, std::vector<double>(all.size(), 0.0), weight);
 }
 
 }  // namespace
@@ -54,16 +47,19 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
         evaluation.field = plain_field(layer, label, footprint, study_.bins, study_.columns);
     allow_for_beds(evaluation, kBedsOverBlocksPlain);
     // a slot that collapses blurs the sides, which a premix would not show
-    const bool alike = moves_alike(study_) && layer.periodic && fill.level() &&
-                       (fill.pure() || study_.scene.plate_thickness == 0) &&
-                       stray_labels(layer, design.partition, fill) <= kLabelsMayStray;
-    if (!alike) return;
+    const bool alike = moves_alike(study_);
+    if (!layer.periodic || !fill.level() || !(fill.pure() || (alike && study_.scene.plate_thickness == 0)) ||
+        !(stray_labels(layer, design.partition, fill) <= kLabelsMayStray))
+        return;
 
     Evaluation every;
     HomogeneousOptions options;
     options.resamples = kResamples;
     options.seed = evaluation.seed;
-    const PooledGrains grains = pool_grains({&layer, 1}, footprint.x_low, footprint.x_high);
+    const BedPowders bed{design.partition, true};
+    const PooledGrains grains = alike
+                                    ? pool_grains({&layer, 1}, footprint.x_low, footprint.x_high)
+                                    : pool_powders({&layer, 1}, {&bed, 1}, footprint.x_low, footprint.x_high);
     every.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
     every.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
     if (study_.target.is_field())

@@ -116,6 +116,32 @@ void MapEvaluator::learn(const Design& design, const Layer& layer, const std::st
     map.average();
 }
 
+void MapEvaluator::read_by_powder(const Design& design) {
+    OriginMap& map = map_of(design);
+    const auto of_b = maps_b_.find(key_of(design, 0));
+    if (of_b == maps_b_.end() || !of_b->second.health.ok()) return;
+    map.beds_of_layers.assign(map.layers.size(), BedPowders{{}, true});
+    for (const Layer& layer : of_b->second.layers) {
+        map.layers.push_back(layer);
+        map.beds_of_layers.push_back({{}, false});
+    }
+    map.state_hash += "+" + of_b->second.state_hash;
+    map.average();
+}
+
+void MapEvaluator::learn_powders(const Design& design, const Layer& layer, const PartitionCurve& partition,
+                                 const std::string& state_hash) {
+    OriginMap& map = map_of(design);
+    if (map.beds_of_layers.empty() || !map.beds_of_layers.front().both()) {
+        map.layers.clear();
+        map.beds_of_layers.clear();
+    }
+    map.layers.push_back(layer);
+    map.beds_of_layers.push_back({partition, true});
+    map.state_hash += "+" + state_hash;
+    map.average();
+}
+
 OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
     const Key key = key_of(design, seed);
     const auto found = maps_.find(key);
@@ -296,7 +322,7 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
         options.seed = map.seed;
         // what was a block on the strip is one on the machine
         if (map.heap) options.block *= map.heap->length / map.heap->longest;
-        const PooledGrains grains = pool_grains(map.layers, footprint.x_low, footprint.x_high, map.share);
+        const PooledGrains grains = map.pooled(footprint.x_low, footprint.x_high);
         evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
         evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
         if (study_.target.is_field())
@@ -328,7 +354,8 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted)
             const double cell =
                 map.heap ? std::max(study_.bins.width, study_.dispenser_width / 20) : study_.bins.width;
             evaluation.map = gradation_map(whole, label, density, cell, study_.dispenser_width);
-            if (!map.heap) {
+            // bins of their own grains are relabelled whole: not where each powder moves in its own way
+            if (!map.heap && map.beds_of_layers.empty()) {
                 evaluation.plain_check = plain_profile(whole, label, footprint, study_.bins, map.seed);
                 for (double& s : evaluation.plain_check.standard_error)
                     s *= std::sqrt(kBedsOverBlocksPlain.profile);

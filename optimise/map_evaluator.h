@@ -21,6 +21,8 @@ struct OriginMap {
     /// Of a map that was not spread but lies between others: what each layer counts, sum 1. Empty: a map that
     /// was spread.
     std::vector<double> share;
+    /// Of a map that is read powder by powder, one for each layer: what stood in its bed. Else empty.
+    std::vector<BedPowders> beds_of_layers;
     std::vector<SpreadResult> spreads;  ///< without pictures; of several layers only: what each of them is
     std::vector<BedFacts> beds;
     Scene scene;  ///< of the first strip
@@ -30,6 +32,11 @@ struct OriginMap {
     long grains = 0, steps = 0;
     double grain_steps = 0, seconds = 0, seconds_cold = 0;
     std::string state_hash;
+    /// The laid grains in a range of x as this map reads them.
+    PooledGrains pooled(double x_low, double x_high) const {
+        return beds_of_layers.empty() ? pool_grains(layers, x_low, x_high, share)
+                                      : pool_powders(layers, beds_of_layers, x_low, x_high);
+    }
     double share_of(std::size_t layer) const {
         return share.empty() ? 1 / double(layers.size()) : share[layer];
     }
@@ -65,6 +72,13 @@ class MapEvaluator : public Evaluator {
     /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
     /// `design`: its origins are as good as the strips'. `state_hash`: of that spread.
     void learn(const Design& design, const Layer& layer, const std::string& state_hash);
+    /// From here on the map of `design` is read powder by powder: from its own strips for A, and from the
+    /// strip of B alone, which was spread before.
+    void read_by_powder(const Design& design);
+    /// The same from spreads with both: adds the layer of one behind `partition`. The first takes the strips'
+    /// place, in which no powder had the other beside it.
+    void learn_powders(const Design& design, const Layer& layer, const PartitionCurve& partition,
+                       const std::string& state_hash);
     /// The design on a map of its own: one strip with powder B in every grain, on a bed that no other map has
     /// seen. Held against the map of powder A it tells whether the two move alike.
     Evaluation with_powder_b(const Design& design);

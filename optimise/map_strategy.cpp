@@ -72,7 +72,7 @@ class MapStrategy {
         if (!place_partition({})) return run_.fail("No partition could be fitted: " + fit_message_);
         stated_comparisons();
         if (map.heap) return run_.finish_extrapolated(predicted_, *map.heap);
-        hold_powders_apart();
+        if (!hold_powders_apart()) return run_.fail("No partition could be fitted: " + fit_message_);
 
         std::vector<ConfirmedDesign> rounds = {unconfirmed(predicted_)};
         while (confirm_or_correct(rounds)) {
@@ -90,8 +90,10 @@ class MapStrategy {
             const bool profile_contradicts = round.p_value < kSignificance;
             const bool drift_contradicts =
                 round.drift_p_value < kSignificance && verdict_of(round.drift_misfit) != Verdict::met;
-            const bool borderline = round.verdict == Verdict::undecided && full_spreads_are_maps(round) &&
-                                    round.distance() > kBorderline;
+            // unlike powders: the map is a guess, and may agree with a poor spread by its own noise alone
+            const bool borderline =
+                round.distance() > kBorderline &&
+                (!alike_ || (round.verdict == Verdict::undecided && full_spreads_are_maps(round)));
             if (study_.design_space.partition_free &&
                 (profile_contradicts || drift_contradicts || borderline)) {
                 run_.enter("correct");
@@ -114,18 +116,27 @@ class MapStrategy {
     bool place_partition(const Correction& correction) {
         Design design = motion_;
         if (study_.design_space.partition_free) {
-            const FitResult fit = best_fit(study_.design_space, correction, {});
+            FitOptions options;
+            // a discrepancy is one of that curve: of its mirror image it may have the other sign
+            if (correction.active && predicted_.design.partition.second.empty())
+                options.near = predicted_.design.partition.points;
+            const FitResult fit = best_fit(study_.design_space, correction, options);
             fit_message_ = fit.message;
             if (!fit.ok) return false;
             design = fit.design;
         }
         predicted_ = run_.map.evaluate(design, 0);
         fit_message_ = predicted_.health.reason;
-        const bool learned = int(run_.map.map_of(motion_).layers.size()) > study_.map_spreads;
+        const OriginMap& map = run_.map.map_of(motion_);
+        const bool by_powder = !map.beds_of_layers.empty(),
+                   together = by_powder && map.beds_of_layers.front().both();
+        const bool learned = together || (!by_powder && int(map.layers.size()) > study_.map_spreads);
         run_.record(correction.active || learned ? "correct" : "map", predicted_,
                     correction.active ? "aimed at the corrected target"
-                    : learned         ? "best partition on the map with the confirmations' origins in it"
-                                      : "best partition on the map");
+                    : together  ? "best partition with each powder moving as it did in the confirmations"
+                    : by_powder ? "best partition with each powder moving as on the strip of its own"
+                    : learned   ? "best partition on the map with the confirmations' origins in it"
+                                : "best partition on the map");
         return predicted_.health.ok();
     }
 
@@ -136,7 +147,8 @@ class MapStrategy {
     FitResult best_fit(const DesignSpace& space, const Correction& correction, FitOptions options) {
         options.seed = study_.seed;
         options.stop = [this] { return run_.runner.stopped(); };
-        FitProblem problem(study_, motion_, run_.map.map_of(motion_).layers);
+        const OriginMap& map = run_.map.map_of(motion_);
+        FitProblem problem(study_, motion_, map.layers, map.share, map.beds_of_layers);
         if (correction.active) {
             for (std::size_t b = 0; b < problem.target.size(); ++b)
                 problem.target[b] -= correction.profile[b];
@@ -197,26 +209,44 @@ class MapStrategy {
     }
 
     /// Powders unlike by what they are: one strip of B tells whether they move alike all the same. Its price
-    /// is a strip; two spreads are left for confirmations in any case.
-    void hold_powders_apart() {
-        if (alike_ || run_.spreads_left() <= kReserve) return;
+    /// is a strip; two spreads are left for confirmations in any case. Where they do not, the design is made
+    /// anew with each powder as on its own strip. False when that gave none.
+    bool hold_powders_apart() {
+        if (alike_ || run_.spreads_left() <= kReserve) return true;
         run_.enter("gate");
         const Evaluation all_b = run_.map.with_powder_b(predicted_.design);
         run_.record("gate", all_b, "the same partition on a strip of powder B alone");
         if (!all_b.health.ok()) {
             run_.warn({fmt::format("no strip of powder B alone ({}): the two powders count as unlike",
                                    all_b.health.reason)});
-            return;
+            return true;
         }
         const PowderGate gate = powder_gate(predicted_, all_b, run_.result.weight);
         run_.result.powder_gate = gate;
         alike_ = gate.passes;
-        if (!alike_)
-            run_.warn({fmt::format(
-                "powders A and B move differently: on a strip of B alone GI differs by {:.3f} rms "
-                "(noise {:.3f}, p = {:.2g}; drift p = {:.2g}). The map is a first guess; only "
-                "spreads with both powders count",
-                gate.difference, gate.noise, gate.p_value, gate.drift_p_value)});
+        if (alike_) return true;
+        run_.warn(
+            {fmt::format("powders A and B move differently: on a strip of B alone GI differs by {:.3f} rms "
+                         "(noise {:.3f}, p = {:.2g}; drift p = {:.2g}). The map is a first guess; only "
+                         "spreads with both powders count",
+                         gate.difference, gate.noise, gate.p_value, gate.drift_p_value)});
+        if (!chambers_are_plain() || !study_.design_space.partition_free) return true;
+        run_.enter("fit");
+        run_.map.read_by_powder(motion_);
+        return place_partition({});
+    }
+
+    /// Pure powders, level chambers, one layer: a side of the partition is a powder, and all of it.
+    bool chambers_are_plain() const {
+        const ChamberFill fill = chamber_fill(study_, motion_);
+        return fill.pure() && fill.level() && study_.scene.layers == 1;
+    }
+
+    /// Powders that move each in its own way, between periodic sides: a spread with both tells how each moves
+    /// beside the other.
+    bool full_spreads_tell_powders(const ConfirmedDesign& round) const {
+        return !alike_ && chambers_are_plain() && !round.layers.empty() && round.layers.front().periodic &&
+               round.layers.front().labelled;
     }
 
     /// Powders that move alike between periodic sides, level chambers: a spread's origins tell what a strip's
@@ -228,15 +258,33 @@ class MapStrategy {
 
     /// The next design after a spread that contradicted the map, or found its design hardly good enough.
     /// Powders that move alike: the difference is the beds' chance, and the full spread's origins go into the
-    /// map, four strips' worth of them on the coupon. Else manifold mapping: aim the map at target -
-    /// (confirmed - map), so that map + discrepancy meets the target; on like powders that would build half
-    /// of one bed's chance into the partition.
+    /// map, four strips' worth of them on the coupon. Powders that do not, but are told apart by where they
+    /// stood: the same, powder by powder, and what the spread then still contradicts is left to manifold
+    /// mapping. Else that alone: aim the map at target - (confirmed - map), so that map + discrepancy meets
+    /// the target; on like powders that would build half of one bed's chance into the partition.
     ConfirmedDesign correct(const ConfirmedDesign& round, bool profile, bool drift) {
         if (full_spreads_are_maps(round)) {
             for (std::size_t k = 0; k < round.layers.size(); ++k)
                 run_.map.learn(motion_, round.layers[k], round.confirmations.at(k).state_hash);
             return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};
         }
+        Evaluation mapped = round.predicted;
+        if (full_spreads_tell_powders(round)) {
+            for (std::size_t k = 0; k < round.layers.size(); ++k)
+                run_.map.learn_powders(motion_, round.layers[k], round.design.partition,
+                                       round.confirmations.at(k).state_hash);
+            mapped = run_.map.quoted(round.design);
+            const GradationProfile& confirmed = study_.target.is_field() ? round.field.cells : round.mean;
+            profile =
+                bins_p_value(confirmed.gi, confirmed.standard_error, mapped.judged().gi,
+                             mapped.judged().standard_error, round.predicted.judged_weight()) < kSignificance;
+            drift = bins_p_value(round.drift.difference, round.drift.standard_error, mapped.drift.difference,
+                                 mapped.drift.standard_error, drift_weights(study_)) < kSignificance;
+            correction_ = {};  // of another map
+            if (!profile && !drift) return place_partition({}) ? unconfirmed(predicted_) : ConfirmedDesign{};
+        }
+        if (!profile && !drift)
+            profile = drift = true;  // neither speaks up alone, and yet it is not good enough
         const std::vector<double> weight = round.predicted.judged_weight();
         const std::vector<double> drift_weight = drift_weights(study_);
         const int run = study_.bins.count;
@@ -249,13 +297,12 @@ class MapStrategy {
         }
         if (profile) {
             const GradationProfile& confirmed = study_.target.is_field() ? round.field.cells : round.mean;
-            correction_.profile =
-                smoothed_discrepancy(confirmed.gi, round.predicted.judged().gi, weight, run);
+            correction_.profile = smoothed_discrepancy(confirmed.gi, mapped.judged().gi, weight, run);
             correction_.variance = smoothed_variance(confirmed.standard_error, weight, run);
         }
         if (drift) {
-            correction_.drift = smoothed_discrepancy(round.drift.difference, round.predicted.drift.difference,
-                                                     drift_weight, run);
+            correction_.drift =
+                smoothed_discrepancy(round.drift.difference, mapped.drift.difference, drift_weight, run);
             correction_.drift_variance = smoothed_variance(round.drift.standard_error, drift_weight, run);
         }
         if (!place_partition(correction_)) return {};

@@ -318,6 +318,19 @@ double equality_p_value(std::span<const double> a, std::span<const double> b,
     return bins > 0 ? chi_squared_upper_tail(sum, bins) : 1;
 }
 
+double bins_p_value(std::span<const double> a, std::span<const double> error_a, std::span<const double> b,
+                    std::span<const double> error_b, std::span<const double> weight) {
+    std::vector<double> x, y, variance_x, variance_y;
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+        if (!(weight[k] > 0) || !std::isfinite(a[k] + b[k] + error_a[k] + error_b[k])) continue;
+        x.push_back(a[k]);
+        y.push_back(b[k]);
+        variance_x.push_back(error_a[k] * error_a[k]);
+        variance_y.push_back(error_b[k] * error_b[k]);
+    }
+    return equality_p_value(x, y, variance_x, variance_y);
+}
+
 double simultaneous_factor(std::span<const double> standard_error, double level, double degrees) {
     const auto bins = std::count_if(standard_error.begin(), standard_error.end(),
                                     [](double s) { return std::isfinite(s) && s > 0; });

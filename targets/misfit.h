@@ -49,6 +49,9 @@ Verdict combine(Verdict a, Verdict b);
 /// are defined; 1 when there is none (nothing speaks against equality).
 double equality_p_value(std::span<const double> a, std::span<const double> b,
                         std::span<const double> variance_a, std::span<const double> variance_b);
+/// The same with standard errors, over the bins of weight > 0 where all four numbers are finite.
+double bins_p_value(std::span<const double> a, std::span<const double> error_a, std::span<const double> b,
+                    std::span<const double> error_b, std::span<const double> weight);
 
 /// Half width of a simultaneous band in standard errors: band = gi -+ factor s_b (clip to [0, 1]) holds all
 /// bins at once with `level`. Sidak: the level^(1/n) two-sided point of Student's t with `degrees` (0 = many:

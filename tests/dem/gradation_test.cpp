@@ -255,6 +255,44 @@ TEST(homogeneous, template_and_profile_are_the_same_estimator) {
     }
 }
 
+TEST(homogeneous, powders_are_weighed_by_the_room_they_had) {
+    // A on 3/4 of the width, B on 1/4: a grain of A counts 4/3, one of B 4, and the step at y = 0.8 mm asks
+    // which of them would have stood on its own side had the border been there
+    Layer layer = layer_of({{2e-3, 0.9e-3, 1}, {2e-3, 1.5e-3, 1}, {2e-3, 0.1e-3, 1}});
+    layer.is_a = {1, 1, 0};
+    layer.dispenser_length = 3.2e-3;
+    const BedPowders bed{{{{0, 0.4e-3}, {3.2e-3, 0.4e-3}}}, true};
+    const PooledGrains grains = pool_powders({&layer, 1}, {&bed, 1}, 1.6e-3, 3.2e-3);
+    EXPECT_NEAR(grains.volume[0], 4.0 / 3 / 1.6e-3, 1e-6);
+    EXPECT_NEAR(grains.volume[2], 4 / 1.6e-3, 1e-6);
+    const PartitionCurve middle{{{0, 0.8e-3}, {3.2e-3, 0.8e-3}}};
+    // grains that do not move across: every bin above is A's, every bin below B's
+    HomogeneousOptions options;
+    options.resamples = 0;
+    const GradationProfile sharp = homogeneous_profile(grains, middle, kBins, options);
+    for (int b = 0; b < 8; ++b) EXPECT_NEAR(sharp.gi[b], b < 4 ? 0 : 1, 1e-12) << b;
+    // B's grain moved 0.2 mm across: in the bin above the border it is still B's, beside two of A's
+    layer.origin_y[2] -= 0.2e-3;
+    const PooledGrains moved = pool_powders({&layer, 1}, {&bed, 1}, 1.6e-3, 3.2e-3);
+    const GradationProfile blurred = homogeneous_profile(moved, middle, kBins, options);
+    EXPECT_NEAR(blurred.gi[4], 2 * (4.0 / 3) / (2 * (4.0 / 3) + 4), 1e-9);
+    EXPECT_NEAR(blurred.gi[5], 1, 1e-12);
+    // thin chambers: no grain stands for more than kLeastShare of the width
+    const BedPowders thin{{{{0, 0.05e-3}, {3.2e-3, 0.05e-3}}}, true};
+    EXPECT_NEAR(pool_powders({&layer, 1}, {&thin, 1}, 1.6e-3, 3.2e-3).volume[2], 1 / kLeastShare / 1.6e-3,
+                1e-6);
+    // each powder alone in a bed of its own, A in two: each bed counts by its width
+    Layer a = layer_of({{2e-3, 0.3e-3, 1}}), b = layer_of({{2e-3, 0.3e-3, 1}});
+    b.width = 0.4e-3;
+    const std::vector<Layer> layers = {a, a, b};
+    const std::vector<BedPowders> beds = {{{}, true}, {{}, true}, {{}, false}};
+    const PooledGrains alone = pool_powders(layers, beds, 1.6e-3, 3.2e-3);
+    EXPECT_NEAR(alone.volume[1], 1 / 3.2e-3, 1e-6);
+    EXPECT_NEAR(alone.volume[2], 1 / 0.4e-3, 1e-6);
+    EXPECT_EQ(powder_of(grains, false).size(), 1u);
+    EXPECT_TRUE(powder_of(grains, true).carries_a.empty());
+}
+
 TEST(homogeneous, smoothing_tends_to_the_hard_labels) {
     const Layer layer = synthetic::make_layer({.grains = 1500}, 9);
     HomogeneousOptions smooth;

@@ -53,6 +53,33 @@ TEST(DemEvaluator, like_powders_between_periodic_sides_are_read_from_every_grain
     EXPECT_LT(of_all, 0.5 * of_bins);
 }
 
+TEST(DemEvaluator, unlike_powders_are_read_each_by_its_own_grains_with_less_noise) {
+    Study study = periodic_coupon();
+    study.scene.powder[1].material.density = 4309;
+    Heap heap;
+    heap.b_shift = 0.15;
+    heap.b_more = 1.3;
+    const Truth expected = truth(heap, study, start_design(study), true);
+    double of_bins = 0, of_all = 0, square = 0;
+    int counted = 0;
+    for (int seed = 1; seed <= 10; ++seed) {
+        const Evaluation got = spread_once(study, heap, seed);
+        ASSERT_TRUE(got.every_grain) << seed;
+        std::vector<double> all = got.profile.gi, bins = got.plain_check.gi;
+        for (std::size_t b = 0; b < all.size(); ++b) {
+            all[b] -= expected.gi[b];
+            bins[b] -= expected.gi[b];
+            if (!(got.weight[b] > 0)) continue;
+            square += std::pow(all[b] / got.profile.standard_error[b], 2);
+            ++counted;
+        }
+        of_all += std::pow(rms(all, got.weight), 2) / 10;
+        of_bins += std::pow(rms(bins, got.weight), 2) / 10;
+    }
+    EXPECT_LT(of_all, 0.6 * of_bins);
+    EXPECT_LT(square / counted, 1.5);  // no further from the truth than its standard errors say
+}
+
 TEST(DemEvaluator, the_band_of_every_grain_holds_the_truth_at_its_rate) {
     // beds that share a shift of their own, as ours do: 40 beds, 2 misses expected at 5 %
     const Study study = periodic_coupon();
@@ -90,20 +117,18 @@ TEST(DemEvaluator, transport_that_depends_on_y_sends_it_back_to_the_bins) {
     EXPECT_TRUE(got.plain_check.gi.empty());
 }
 
-TEST(DemEvaluator, walls_unlike_powders_unequal_fills_and_stray_labels_are_read_from_bins) {
+TEST(DemEvaluator, walls_unequal_fills_and_stray_labels_are_read_from_bins) {
     const auto plain = [](const Study& study, const Heap& heap) {
         const Evaluation got = spread_once(study, heap);
         return !got.every_grain && got.plain_check.gi.empty() && got.health.warnings.empty();
     };
     EXPECT_TRUE(plain(coupon(), {}));
     Study study = periodic_coupon();
-    study.scene.powder[1].material.density = 4309;
-    EXPECT_TRUE(plain(study, {}));
-    study = periodic_coupon();
-    study.scene.powder[1].size.d50 *= 1.5;
-    EXPECT_TRUE(plain(study, {}));
-    study = periodic_coupon();
     study.design_space.fill_fraction[1].value = 0.8;
+    EXPECT_TRUE(plain(study, {}));
+    study = periodic_coupon();
+    study.scene.powder[1].material.density = 4309;
+    study.scene.share_a = {0.9, 0.1};  // a side is no powder
     EXPECT_TRUE(plain(study, {}));
     Heap heap;
     heap.stray = 0.05;

@@ -272,8 +272,7 @@ TEST(Field, unlike_powders_are_corrected_cell_by_cell) {
     study.max_spreads = 6;
     study.scene.powder[1].material.density *= 0.54;
     Heap heap = turning();
-    heap.full_shift = -0.08;
-    heap.light_shift = -0.16;
+    heap.light_shift = -0.16;  // beside each other they travel as A does alone
     const StudyResult result = run(study, heap).result;
     EXPECT_TRUE(std::any_of(result.history.begin(), result.history.end(),
                             [](const HistoryEntry& entry) { return entry.stage == "correct"; }));

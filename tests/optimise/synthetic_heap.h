@@ -20,6 +20,8 @@ struct Heap {
     double grains_per_m2 = 3000 / (3.2e-3 * 0.4e-3);
     double full_shift = 0;   ///< the labelled spread's physics: centre moved by this
     double light_shift = 0;  ///< a strip all of a powder lighter than 6000 kg/m3: centre moved by this
+    double b_shift = 0;      ///< beside A, B's grains: centre moved by this ...
+    double b_more = 1;       ///< ... and so many times as likely to be laid
     double bed_shift = 0;    ///< sd of what all grains of one bed share: a shift of the centre
     double across = 0;       ///< centre moves by this from one side to the other: transport that depends on y
     double stray = 0;        ///< share of the labels that are drawn by lot
@@ -28,6 +30,7 @@ struct Heap {
     bool fail_map = false;
     double capture = 0.6;
 
+    bool apart() const { return b_shift != 0 || b_more != 1; }
     double mean(const Scene& scene, double deposit_x, bool labelled) const {
         const double turning = turn + land_turn * (scene.land - 3.2e-3);
         return scene.dispenser_length * (centre +
@@ -71,12 +74,22 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
     for (int i = 0; i < grains; ++i) {
         const double x = scene.platform_length * random.uniform();
         const double y = scene.width * random.uniform();
+        // powders that move each in its own way are drawn apart: a grain that its kernel would bring from the
+        // other's side is not there
+        const bool apart = labelled && heap.apart();
+        const bool of_b = apart && random.uniform() < heap.b_more / (1 + heap.b_more);
         const double mean = heap.mean(scene, x, labelled) + shift +
+                            (of_b ? heap.b_shift * scene.dispenser_length : 0) +
                             heap.across * scene.dispenser_length * (y / scene.width - 0.5),
                      sd = heap.mixing * scene.dispenser_length;
         double origin_x = -1;
         while (!(origin_x >= 0 && origin_x < scene.dispenser_length)) origin_x = mean + sd * random.normal();
         const double origin_y = y - heap.sigma_y * random.normal();
+        if (apart &&
+            partition->on_side_a(origin_x, layer.periodic
+                                               ? origin_y - scene.width * std::floor(origin_y / scene.width)
+                                               : origin_y) == of_b)
+            continue;
         const double volume = 3.35e-14 * std::exp(0.5 * random.normal());
         layer.deposit_x.push_back(x);
         layer.deposit_y.push_back(y);
@@ -130,7 +143,7 @@ inline Study coupon() {
 }
 
 /// True GI of the bins, and true drift per bin, by quadrature of the kernel: P(A) = <Phi((y - yc(origin_x)) /
-/// sigma_y)>.
+/// sigma_y)>; of powders drawn apart P_A / (P_A + b_more (1 - P_B)), each by its own kernel.
 struct Truth {
     std::vector<double> gi, drift;
 };
@@ -152,24 +165,34 @@ inline Truth truth(const Heap& heap, const Study& study, const Design& design, b
     }
     Truth result;
     for (int bin = 0; bin < study.bins.count; ++bin) {
-        double sum = 0, first = 0, last = 0;
+        // shares of A and of B over all x, the first and the last third
+        double of_a[3] = {}, of_b[3] = {};
         for (int d = 0; d < deposits; ++d) {
             const double x = footprint.x_low + (d + 0.5) / deposits * (footprint.x_high - footprint.x_low);
-            const double mean = heap.mean(scene, x, labelled), sd = heap.mixing * length;
-            double norm = 0, share = 0;
-            for (int i = 0; i < origins; ++i) {
-                const double z = ((i + 0.5) * length / origins - mean) / sd, weight = std::exp(-0.5 * z * z);
-                norm += weight;
-                for (int h = 0; h < heights; ++h) {
-                    const double y = study.bins.low(bin) + (h + 0.5) / heights * study.bins.width;
-                    const double p = 0.5 * std::erfc(-(y - yc[i]) / heap.sigma_y * std::sqrt(0.5));
-                    share += weight * (above ? p : 1 - p) / heights;
+            const double sd = heap.mixing * length;
+            for (const bool a : {true, false}) {
+                const double mean =
+                    heap.mean(scene, x, labelled) + (labelled && !a ? heap.b_shift * length : 0);
+                double norm = 0, share = 0;
+                for (int i = 0; i < origins; ++i) {
+                    const double z = ((i + 0.5) * length / origins - mean) / sd,
+                                 weight = std::exp(-0.5 * z * z);
+                    norm += weight;
+                    for (int h = 0; h < heights; ++h) {
+                        const double y = study.bins.low(bin) + (h + 0.5) / heights * study.bins.width;
+                        const double p = 0.5 * std::erfc(-(y - yc[i]) / heap.sigma_y * std::sqrt(0.5));
+                        share += weight * (above ? p : 1 - p) / heights;
+                    }
                 }
+                double* const laid = a ? of_a : of_b;
+                const double amount = a ? share / norm : (labelled ? heap.b_more : 1) * (1 - share / norm);
+                laid[0] += amount;
+                if (d < deposits / 3) laid[1] += amount;
+                if (d >= deposits - deposits / 3) laid[2] += amount;
             }
-            sum += share / norm / deposits;
-            if (d < deposits / 3) first += share / norm / (deposits / 3);
-            if (d >= deposits - deposits / 3) last += share / norm / (deposits / 3);
         }
+        const auto gi = [&](int part) { return of_a[part] / (of_a[part] + of_b[part]); };
+        const double sum = gi(0), first = gi(1), last = gi(2);
         result.gi.push_back(sum);
         result.drift.push_back(last - first);
     }
