@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/origin-map.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_origin_map.py [turnover] [evidence] [light] [beds] [coverage]
+    python3 docs/make_origin_map.py [turnover] [evidence] [light] [beds] [coverage] [unlike]
 
 `light` adds a row to the evidence: the first study's partition with a powder B of 0.54 times the density.
 Results are kept in runs/origin-map/, so that a second call only rewrites the page; --kept runs nothing at all. Needs nothing but Python's standard library.
@@ -167,11 +167,30 @@ def coverage_table():
     return "\n".join(rows)
 
 
+def unlike_table():
+    rows = ["| design | B beside A | one partition on a strip of B against A's strips, rms (noise) | predicted misfit, x drift | spreads | confirmed misfit (95 % bound, tolerance) | x drift (95 % bound, tolerance) | verdict |",
+            "|---|---|---|---|---|---|---|---|"]
+    for study, what in (("04_unlike_alloys", "0.54 times the density"), ("06_316l_cucrzr", "1.12 times the density"),
+                        ("07_two_sizes", "D50 50 um beside 30 um")):
+        r = program(["design", f"examples/{study}.toml", "--force", "--out", os.path.join(RUNS, "unlike-" + study)], "unlike-" + study)
+        if r is None:
+            rows.append(f"| {study[:2]} | {what} | not measured | | | | | |")
+            continue
+        gate, p, n = r["powder_gate"], r["predicted"], r["spreads"]
+        m, d = r["misfit"], r["x_drift"]
+        held = "no strip of B" if gate is None else f"{gate['difference']:.3f} ({gate['noise']:.3f})" + (" passes" if gate["passes"] else " fails")
+        rows.append(f"| {study[:2]} | {what} | {held} | {p['misfit']['value']:.3f}, {p['x_drift']['value']:.3f} | "
+                    f"{n['map']} strips, {n['full']} full | {m['value']:.3f} ({m['interval'][1]:.3f}, {m['tolerance']:.2f}) | "
+                    f"{d['value']:.3f} ({d['interval'][1]:.3f}, {d['tolerance']:.2f}) | {r['verdict'].replace('_', ' ')} |")
+    return "\n".join(rows)
+
+
 def main():
-    wanted = [a for a in sys.argv[1:] if a != "--kept"] or ["turnover", "evidence", "beds", "coverage"]
+    wanted = [a for a in sys.argv[1:] if a != "--kept"] or ["turnover", "evidence", "beds", "coverage", "unlike"]
     if "light" in wanted:
         wanted.append("evidence")
-    for name, table in (("turnover", turnover_table), ("evidence", evidence_table), ("beds", beds_table), ("coverage", coverage_table)):
+    for name, table in (("turnover", turnover_table), ("evidence", evidence_table), ("beds", beds_table), ("coverage", coverage_table),
+                        ("unlike", unlike_table)):
         if name in wanted:
             put(os.path.join(DOCS, "origin-map.md"), name, table())
 
