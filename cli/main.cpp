@@ -97,6 +97,7 @@ int run(int argc, char** argv) {
     app.get_formatter()->column_width(34);
     bool version = false;
     app.add_flag("--version", version, "Version, source, compiler, instruction set");
+    add_init(app, call);
     add_design(app, call);
     add_compare(app, call);
     add_evaluate(app, call);
@@ -114,6 +115,8 @@ int run(int argc, char** argv) {
     add_limits(app, call);
     add_materials(app, call);
     add_machines(app, call);
+    add_completion(app, call);
+    add_manual(app, call);
     CLI::App* version_verb = app.add_subcommand("version", "Version, source, compiler, instruction set");
     add_output_options(*version_verb, call.options);
     CLI::App* help_verb = app.add_subcommand("help", "This text, or the options of a verb");
