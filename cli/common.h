@@ -70,6 +70,7 @@ void add_out_options(CLI::App& verb, CommonOptions& options);     ///< --out --f
 // One function per verb, each in the file of its name: registers the verb and its own options; the parsed
 // call runs it.
 void add_design(CLI::App& app, Call& call);
+void add_init(CLI::App& app, Call& call);
 void add_compare(CLI::App& app, Call& call);
 void add_evaluate(CLI::App& app, Call& call);
 void add_check(CLI::App& app, Call& call);
@@ -86,6 +87,8 @@ void add_spec(CLI::App& app, Call& call);
 void add_status(CLI::App& app, Call& call);
 void add_materials(CLI::App& app, Call& call);
 void add_machines(CLI::App& app, Call& call);
+void add_completion(CLI::App& app, Call& call);
+void add_manual(CLI::App& app, Call& call);
 
 /// Reads the study with --set and --seed applied. A file that cannot be opened is Failure io, with the
 /// nearest file name; bad content is InputError with all problems.

@@ -97,6 +97,7 @@ int run(int argc, char** argv) {
     app.get_formatter()->column_width(34);
     bool version = false;
     app.add_flag("--version", version, "Version, source, compiler, instruction set");
+    add_init(app, call);
     add_design(app, call);
     add_compare(app, call);
     add_evaluate(app, call);
@@ -114,6 +115,8 @@ int run(int argc, char** argv) {
     add_limits(app, call);
     add_materials(app, call);
     add_machines(app, call);
+    add_completion(app, call);
+    add_manual(app, call);
     CLI::App* version_verb = app.add_subcommand("version", "Version, source, compiler, instruction set");
     add_output_options(*version_verb, call.options);
     CLI::App* help_verb = app.add_subcommand("help", "This text, or the options of a verb");
@@ -124,6 +127,20 @@ int run(int argc, char** argv) {
     const std::string all_help = app.help();
     const auto verb_help = [](const CLI::App& one) { return one.help("gradwright"); };
     const std::string hint_to_help = "'gradwright help' lists the verbs";
+    std::error_code ignored;
+    if (!arguments.empty() && !find_verb(app, arguments[0]) && std::filesystem::exists(arguments[0], ignored))
+        return report_failure(
+            json, ExitCode::usage, fmt::format("'{}' is a file or folder, not a verb", arguments[0]),
+            fmt::format("say what to do with it first: 'gradwright check {0}', 'gradwright design {0}'; {1}",
+                        arguments[0], hint_to_help));
+    if (!arguments.empty() && !arguments[0].empty() && arguments[0][0] == '-') {
+        const std::string unknown = unknown_option(app, {arguments[0]});
+        if (!unknown.empty())
+            return report_failure(json, ExitCode::usage,
+                                  fmt::format("unknown option '{}' in the place of the verb{}", unknown,
+                                              hint(unknown, option_names(app))),
+                                  "options follow the verb; " + hint_to_help);
+    }
     if (!arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-' &&
         !find_verb(app, arguments[0]))
         return report_failure(

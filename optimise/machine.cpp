@@ -38,13 +38,60 @@ bool is_number_with_source(const toml::node& node) {
     return node.is_table() && node.as_table()->contains("value");
 }
 
+/// Nobody vouches for a number without a source: it is treated as a stand-in.
+std::string source_or_stand_in(const std::string& source) {
+    return source.empty() ? "no source given: measure this" : source;
+}
+
+/// The file's own title, source and notes are no numbers.
+bool is_heading(const std::string& prefix, const std::string& name) {
+    return prefix.empty() && (name == "title" || name == "source" || name == "notes");
+}
+
+void collect_numbers(const toml::table& table, const std::string& prefix, const std::string& source,
+                     std::vector<MachineNumber>& numbers) {
+    for (const auto& [key, node] : table) {
+        const std::string name = prefix + std::string(key.str());
+        if (is_heading(prefix, name) || name == "feed") continue;
+        if (node.is_table() && !is_number_with_source(node)) {
+            collect_numbers(*node.as_table(), name + ".", source, numbers);
+            continue;
+        }
+        const toml::table* entry = node.as_table();
+        const std::string own = entry ? string_at(*entry, "source") : source;
+        const std::string shown = source_or_stand_in(own);
+        numbers.push_back({name, input_text(entry ? *entry->get("value") : node), shown,
+                           shown.find(kMeasureThis) == std::string::npos});
+    }
+}
+
+/// The numbers of a machine file in the order of machine_keys().
+std::vector<MachineNumber> numbers_of(const toml::table& table) {
+    std::vector<MachineNumber> numbers;
+    collect_numbers(table, "", string_at(table, "source"), numbers);
+    const auto& keys = machine_keys();
+    std::stable_sort(numbers.begin(), numbers.end(), [&keys](const MachineNumber& a, const MachineNumber& b) {
+        return std::find(keys.begin(), keys.end(), a.key) < std::find(keys.begin(), keys.end(), b.key);
+    });
+    return numbers;
+}
+
+bool is_path(const std::string& use) {
+    return use.size() > 5 && use.ends_with(".toml");
+}
+
+/// File of a machine: a shipped name, or a path relative to `folder`.
+fs::path file_of(const std::string& use, const fs::path& folder) {
+    return is_path(use) ? folder / use : fs::path(data_folder()) / "machines" / (use + ".toml");
+}
+
 /// Walks a machine file; `prefix` is "" or "dispenser." ...; `source` holds for numbers that name none of
 /// their own.
 void supply_table(TomlReader& reader, const toml::table& table, const std::string& prefix,
                   const std::string& file, const std::string& source) {
     for (const auto& [key, node] : table) {
         const std::string name = prefix + std::string(key.str());
-        if (prefix.empty() && (name == "title" || name == "source" || name == "notes")) continue;
+        if (is_heading(prefix, name)) continue;
         const int line = static_cast<int>(key.source().begin.line);
         const auto& keys = machine_keys();
         if (node.is_table() && !is_number_with_source(node)) {
@@ -60,9 +107,10 @@ void supply_table(TomlReader& reader, const toml::table& table, const std::strin
                 if (inner.str() != "value" && inner.str() != "source")
                     reader.add({file, line, name + "." + std::string(inner.str()), "", "is not a known key",
                                 "a number of a machine has value and source"});
-            reader.supply("machine." + name, *entry.get("value"), file, string_at(entry, "source"));
+            reader.supply("machine." + name, *entry.get("value"), file,
+                          source_or_stand_in(string_at(entry, "source")));
         } else {
-            reader.supply("machine." + name, node, file, source);
+            reader.supply("machine." + name, node, file, source_or_stand_in(source));
         }
     }
 }
@@ -70,22 +118,29 @@ void supply_table(TomlReader& reader, const toml::table& table, const std::strin
 }  // namespace
 
 const std::vector<std::string>& machine_keys() {
-    static const std::vector<std::string> keys = {"dispenser.length", "dispenser.width",
-                                                  "dispenser.depth",  "platform.length",
-                                                  "platform.width",   "land",
-                                                  "second_land",      "blade.tip_radius",
-                                                  "blade.thickness",  "wall"};
+    static const std::vector<std::string> keys = {"dispenser.length",
+                                                  "dispenser.width",
+                                                  "dispenser.depth",
+                                                  "platform.length",
+                                                  "platform.width",
+                                                  "land",
+                                                  "second_land",
+                                                  "blade.tip_radius",
+                                                  "blade.thickness",
+                                                  "wall",
+                                                  "feed"};
     return keys;
 }
 
 std::string data_folder() {
     std::error_code ignored;
     if (const char* folder = std::getenv("GRADWRIGHT_DATA"); folder && *folder) return folder;
-    const fs::path source = fs::path(GRADWRIGHT_SOURCE_DIR) / "examples";
-    if (fs::exists(source / "materials.toml", ignored)) return source.string();
-    // Installed: bin/gradwright beside share/gradwright.
+    // Installed, the data lie beside the program wherever both were moved to: an older source tree that is
+    // still there must not speak for them.
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    return (program.parent_path().parent_path() / "share" / "gradwright").string();
+    const fs::path installed = (program.parent_path() / GRADWRIGHT_DATA_FROM_PROGRAM).lexically_normal();
+    if (fs::exists(installed / "materials.toml", ignored)) return installed.string();
+    return (fs::path(GRADWRIGHT_SOURCE_DIR) / "examples").string();
 }
 
 std::vector<MachineInfo> shipped_machines() {
@@ -95,24 +150,27 @@ std::vector<MachineInfo> shipped_machines() {
         if (entry.path().extension() != ".toml") continue;
         const auto table = parse_machine(entry.path().string());
         machines.push_back({entry.path().stem().string(), string_at(*table, "title"),
-                            string_at(*table, "source"), entry.path().string()});
+                            string_at(*table, "source"), entry.path().string(), numbers_of(*table)});
     }
     std::sort(machines.begin(), machines.end(),
               [](const MachineInfo& a, const MachineInfo& b) { return a.name < b.name; });
     return machines;
 }
 
+std::vector<MachineNumber> machine_numbers(const std::string& use, const std::string& folder) {
+    return numbers_of(*parse_machine(file_of(use, folder).string()));
+}
+
 std::string supply_machine(TomlReader& reader, const std::string& use, const InputProblem& at) {
-    const bool is_path = use.size() > 5 && use.ends_with(".toml");
-    fs::path file = is_path ? fs::path(reader.file()).parent_path() / use
-                            : fs::path(data_folder()) / "machines" / (use + ".toml");
+    const bool path = is_path(use);
+    const fs::path file = file_of(use, fs::path(reader.file()).parent_path());
     std::error_code ignored;
-    if ((!is_path && use.find('/') != std::string::npos) || !fs::is_regular_file(file, ignored)) {
+    if ((!path && use.find('/') != std::string::npos) || !fs::is_regular_file(file, ignored)) {
         std::vector<std::string> names;
         for (const MachineInfo& machine : shipped_machines()) names.push_back(machine.name);
         const std::string nearest = nearest_name(use, names);
         InputProblem problem = at;
-        problem.rule = is_path ? "there is no such machine file" : "is not a shipped machine";
+        problem.rule = path ? "there is no such machine file" : "is not a shipped machine";
         problem.mend = nearest.empty()
                            ? fmt::format("shipped: {}; or a path that ends in .toml", joined(names))
                            : fmt::format("did you mean \"{}\"?", nearest);

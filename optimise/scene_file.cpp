@@ -199,6 +199,15 @@ void read_machine(TomlReader& reader, Section& root, Study& study) {
     if (!machine.has("name") && !title.empty())
         reader.amend("machine.name", title, "machine file", "machine.use");
 
+    const TomlReader::Found feed = machine.find("feed");
+    if (feed.node && feed.node->value<std::string>() == "hopper")
+        machine.problem(feed, "feed",
+                        "is not what can be designed for: a hopper travels with the blade and pours out "
+                        "powder on the way, so there is no dispenser in which a partition could stand",
+                        "take a machine whose powder a piston lifts before the blade (feed = \"piston\")");
+    else
+        machine.choice("feed", {"piston"}, "piston", "a piston lifts the powder before the blade");
+
     const std::string mend = "give it, or take a shipped machine: use = \"coupon-rig\"";
     const Range plan = Range::above_to(0, kLargestPlan);
     // Where `use` failed, its missing numbers are no further problems.

@@ -38,14 +38,22 @@ std::string format_quantity(double si, const std::string& dimension);
 /// Nearest of `valid` to `word` by edit distance; empty when nothing is near.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& valid);
 
+struct MachineNumber {
+    std::string key;        ///< "dispenser.length"
+    std::string value;      ///< as written: "250 mm"
+    std::string source;     ///< its own, else the file's
+    bool measured = false;  ///< false: a stand-in, the source says "measure this"
+};
 struct MachineInfo {
     std::string name, title, source;
     std::string file;
+    std::vector<MachineNumber> numbers;
 };
 std::vector<MachineInfo> shipped_machines();  ///< from examples/machines/*.toml
 std::vector<Material> shipped_materials();    ///< from examples/materials.toml; each with its source
-/// Folder of the shipped data: GRADWRIGHT_DATA, else the source tree's examples, else the installed share
-/// folder.
+/// Folder of the shipped data: GRADWRIGHT_DATA, else share/gradwright beside the running program, else the
+/// source tree's examples. A program of your own that links the installed library sets GRADWRIGHT_DATA to
+/// what find_package gives as GRADWRIGHT_DATA_FOLDER (examples/library).
 std::string data_folder();
 
 }  // namespace gradwright

@@ -231,6 +231,19 @@ void read_layer(TomlReader& reader, Section& target, Study& study) {
     }
 }
 
+/// A gradation that lies wholly beside the bed is a slip of the pen, most often of the unit: what is left of
+/// it is one pure powder.
+void refuse_beside_the_bed(TomlReader& reader, const std::vector<std::string>& keys, double low, double high,
+                           double width) {
+    if (reader.sound(keys) && (high <= 0 || low >= width))
+        reader.conflict(
+            keys,
+            fmt::format("lies beside the bed, which is {} wide (machine.dispenser.width): no gradation "
+                        "is left of the target",
+                        mm(width)),
+            fmt::format("y runs from 0 to {} across the bed", mm(width)));
+}
+
 /// Returns the shape's name; empty when there is none that is known.
 std::string read_shape(TomlReader& reader, Section& target, Study& study) {
     if (!target.has("shape")) {
@@ -261,6 +274,8 @@ std::string read_shape(TomlReader& reader, Section& target, Study& study) {
                 std::swap(gi0, gi1);
             }
         }
+        if (reader.sound({"machine"}))
+            refuse_beside_the_bed(reader, {"target.from.y", "target.to.y"}, y0, y1, study.dispenser_width);
         study.target = linear_target(y0, gi0, y1, gi1);
     } else if (shape == "sigmoid") {
         const double centre =
@@ -273,6 +288,8 @@ std::string read_shape(TomlReader& reader, Section& target, Study& study) {
     } else if (shape == "step") {
         const double y =
             target.quantity("y", "length", required("where the GI jumps"), Range::between(-10, 10));
+        if (reader.sound({"machine"}))
+            refuse_beside_the_bed(reader, {"target.y"}, y, y, study.dispenser_width);
         const double low = target.number("gi_low", {0, "GI below the step"}, gi);
         const double high = target.number("gi_high", {1, "GI above the step"}, gi);
         study.target = step_target(y, low, high);

@@ -127,6 +127,17 @@ TEST_F(Program, an_unknown_option_is_a_usage_error_with_the_nearest_name) {
     EXPECT_TRUE(wrote_nothing());
 }
 
+TEST_F(Program, a_study_or_an_option_in_the_place_of_the_verb_is_told_as_such) {
+    std::ofstream(folder_ / "work" / "mine.toml") << "";
+    const Outcome study = run({"mine.toml", "--json"});
+    EXPECT_EQ(study.code, 2);
+    EXPECT_THAT(study.err, HasSubstr("'gradwright check mine.toml', 'gradwright design mine.toml'"));
+    const Outcome option = run({"-c", "mine.toml"});
+    EXPECT_EQ(option.code, 2);
+    EXPECT_THAT(option.err, HasSubstr("unknown option '-c' in the place of the verb"));
+    EXPECT_THAT(run({"--verison"}).err, HasSubstr("did you mean '--version'?"));
+}
+
 TEST_F(Program, values_that_an_option_does_not_take_are_usage_errors) {
     const std::vector<std::vector<std::string>> calls = {
         {"design"},

@@ -3,6 +3,7 @@
 // word.
 #include "optimise/study_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +13,8 @@
 #include <fstream>
 #include <numbers>
 #include <sstream>
+
+#include "optimise/machine.h"
 
 namespace gradwright {
 namespace {
@@ -523,17 +526,72 @@ TEST(examples, of_the_paper_fixes_five_degrees_and_cuts_no_sizes) {
 
 TEST(shipped_machines, can_each_be_used_and_own_up_to_what_nobody_measured) {
     const std::vector<MachineInfo> machines = shipped_machines();
-    ASSERT_GE(machines.size(), 4u);
+    ASSERT_GE(machines.size(), 5u);
     for (const MachineInfo& machine : machines) {
         EXPECT_FALSE(machine.title.empty()) << machine.name;
         EXPECT_FALSE(machine.source.empty()) << machine.name;
         const Study study = parsed("", {"machine.use=\"" + machine.name + "\""});
         EXPECT_EQ(study.machine_name, machine.title);
-        if (machine.name == "coupon-rig") continue;
-        EXPECT_EQ(origin(study, "machine.platform.length"), "machine file") << machine.name;
-        EXPECT_EQ(origin(study, "machine.dispenser.length"), "assumed") << machine.name;
-        EXPECT_THAT(study.warnings, Contains(HasSubstr("machine.dispenser.length"))) << machine.name;
+        EXPECT_GE(machine.numbers.size(), 9u) << machine.name;
+        for (const MachineNumber& number : machine.numbers) {
+            const std::string name = machine.name + " " + number.key;
+            EXPECT_FALSE(number.source.empty()) << name;
+            EXPECT_EQ(number.measured, number.source.find("measure this") == std::string::npos) << name;
+            EXPECT_EQ(origin(study, "machine." + number.key), number.measured ? "machine file" : "assumed")
+                << name;
+            const InputEntry* entry = input(study, "machine." + number.key);
+            ASSERT_NE(entry, nullptr) << name;
+            EXPECT_EQ(entry->note, number.source) << name;
+            if (!number.measured) {
+                EXPECT_THAT(study.warnings, Contains(HasSubstr("machine." + number.key))) << name;
+            }
+        }
     }
+}
+
+TEST(machine_file, has_every_number_overridden_by_the_study) {
+    const std::vector<std::pair<std::string, std::string>> numbers = {
+        {"dispenser.length", "7 mm"},  {"dispenser.width", "3 mm"},
+        {"dispenser.depth", "5 mm"},   {"platform.length", "6 mm"},
+        {"platform.width", "3 mm"},    {"land", "2 mm"},
+        {"second_land", "4 mm"},       {"blade.tip_radius", "9 um"},
+        {"blade.thickness", "0.8 mm"}, {"wall", "316L"}};
+    ASSERT_EQ(numbers.size() + 1, machine_keys().size());  // and feed, which has one value only
+    std::vector<std::string> set = {"machine.use=\"eos-m290\""};
+    for (const auto& [key, value] : numbers) set.push_back(fmt::format("machine.{}=\"{}\"", key, value));
+    const Study study = parsed("", set);
+    for (const auto& [key, value] : numbers) {
+        const InputEntry* entry = input(study, "machine." + key);
+        ASSERT_NE(entry, nullptr) << key;
+        EXPECT_EQ(entry->value, value) << key;
+        EXPECT_EQ(entry->origin, "given") << key;
+    }
+    EXPECT_EQ(study.scene.wall.name, "316L");
+    EXPECT_EQ(study.scene.second_land, 4e-3);
+    EXPECT_EQ(study.scene.blade_tip_radius, 9e-6);
+    for (const std::string& warning : study.warnings) EXPECT_THAT(warning, Not(HasSubstr("stand-in")));
+}
+
+TEST(machine_file, marks_a_number_without_a_source_as_a_stand_in) {
+    const fs::path folder = fs::path(testing::TempDir()) / "machine without sources";
+    fs::create_directories(folder);
+    std::ofstream(folder / "rig.toml")
+        << "title = \"rig\"\nland = \"2 mm\"\ndispenser = { length = \"3 mm\", width = { value = \"1.6 mm\", "
+           "source = \"caliper\" } }\nplatform = { length = \"3 mm\" }\n";
+    const std::vector<MachineNumber> numbers = machine_numbers("rig.toml", folder.string());
+    ASSERT_EQ(numbers.size(), 4u);
+    EXPECT_EQ(numbers[0].key, "dispenser.length");
+    EXPECT_EQ(numbers[0].source, "no source given: measure this");
+    EXPECT_FALSE(numbers[0].measured);
+    EXPECT_EQ(numbers[1].source, "caliper");
+    EXPECT_TRUE(numbers[1].measured);
+    const Study study =
+        parse_study(kShort.substr(kShort.find("[powder.A]")) + "[machine]\nuse = \"rig.toml\"\n",
+                    (folder / "study.toml").string());
+    EXPECT_EQ(origin(study, "machine.land"), "assumed");
+    EXPECT_EQ(origin(study, "machine.dispenser.width"), "machine file");
+    EXPECT_THAT(study.warnings, Contains(HasSubstr("machine.land (2 mm)")));
+    fs::remove_all(folder);
 }
 
 TEST(shipped_materials, are_six_alloys_and_the_wall_each_with_the_source_of_every_number) {
