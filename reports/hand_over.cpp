@@ -32,6 +32,8 @@ std::string id_of(const Study& study, const std::vector<Plate>& plates) {
     for (const Plate& plate : plates) {
         text += fmt::format("{} {:.9g} {:.9g} {:.9g} {:.9g} {}\n", plate.name, plate.thickness,
                             plate.bend_radius, plate.z_low, plate.z_high, plate.rounded);
+        if (plate.tabs())
+            text += fmt::format("{:.9g} {:.9g} {:.9g}\n", plate.z_seat, plate.ends[0].cut, plate.ends[1].cut);
         for (const PlanPoint& p : plate.corners) text += fmt::format("{:.9g} {:.9g}\n", p.x, p.y);
     }
     std::string digits = sha256(text).substr(0, 8);
@@ -54,7 +56,10 @@ FillPlan fill_plan(const Study& study, const FinishedDesign& finished, const Han
     const PartitionBuild& build = study.build;
     FillPlan plan;
     const auto ideal = ideal_areas(study, finished.design);
-    const auto net = chamber_areas(study, finished.design, over.plates);
+    std::array<double, 2> level;
+    for (const std::size_t k : {0u, 1u})
+        level[k] = (1 - finished.design.fill_fraction[k]) * scene.dispenser_depth;
+    const auto volume = chamber_volumes(study, finished.design, over.plates, level);
     // either end of a line may stand off by its tolerance: at most half its length times that, each
     double area_error = 0;
     for (const Plate& plate : over.plates)
@@ -67,13 +72,13 @@ FillPlan fill_plan(const Study& study, const FinishedDesign& finished, const Han
         const auto k = static_cast<std::size_t>(i);
         chamber.powder = chamber_name(study, i);
         chamber.ideal_area = ideal[k];
-        chamber.area = net[k];
-        chamber.level = (1 - finished.design.fill_fraction[k]) * scene.dispenser_depth;
+        chamber.level = level[k];
         // the scene's dose height is the larger piston's
         const auto& dose = finished.design.dose;
         chamber.rise = scene.dose_height * dose[k] / std::max(dose[0], dose[1]);
         const double height = scene.dispenser_depth - chamber.level;
-        chamber.volume = chamber.area * height;
+        chamber.volume = volume[k];
+        chamber.area = chamber.volume / height;
         chamber.measured = build.bulk_density[k] > 0;
         chamber.bulk_density =
             chamber.measured ? build.bulk_density[k] : finished.bed_packing * solid_density(scene, i);
@@ -211,13 +216,14 @@ HandOver hand_over(const Study& study, const FinishedDesign& finished) {
     over.plates = plates_of(study, finished.design);
     if (over.plates.empty())
         throw std::invalid_argument("the partition does not cross the dispenser: there is nothing to build");
+    over.id = id_of(study, over.plates);
     bool bent = false;
-    for (const Plate& plate : over.plates) {
+    for (Plate& plate : over.plates) {
         bent = bent || !plate.turns.empty();
+        over.marks.push_back(engrave(plate, over.id, arrow_along(plate), study.build.engraving));
         over.flats.push_back(flat_pattern(plate));
     }
     over.make = study.build.printed ? "printed wall" : bent ? "bent sheet" : "straight sheet";
-    over.id = id_of(study, over.plates);
     over.checks = plate_checks(study, over.plates);
     over.slot = slot_effect(study, finished.design, over.plates);
     over.fill = fill_plan(study, finished, over);

@@ -10,6 +10,7 @@
 #include "reports/flat_pattern.h"
 #include "reports/plate.h"
 #include "reports/plate_checks.h"
+#include "reports/plate_marks.h"
 
 namespace gradwright {
 
@@ -29,10 +30,10 @@ struct FinishedDesign {
 struct ChamberPlan {
     std::string powder;         ///< "IN718", or the premix
     double ideal_area = 0;      ///< in plan, beside a partition of no thickness [m2]
-    double area = 0;            ///< beside the plate [m2]
+    double area = 0;            ///< beside the plate, mean over the height [m2]
     double level = 0;           ///< of the powder below the rim [m]
     double rise = 0;            ///< of its piston for each layer [m]; the same for both with one floor
-    double volume = 0;          ///< area x (depth - level) [m3]
+    double volume = 0;          ///< from the floor to the level, beside the plate [m3]
     double bulk_density = 0;    ///< [kg/m3]
     bool measured = false;      ///< false: solid density x simulated packing
     double mass = 0;            ///< [kg]
@@ -65,6 +66,7 @@ struct HandOver {
     std::string make;        ///< "straight sheet" | "bent sheet" | "printed wall"
     std::vector<Plate> plates;
     std::vector<FlatPattern> flats;
+    std::vector<std::array<MarkText, 2>> marks;  ///< of each plate, on side A and side B
     std::vector<PlateCheck> checks;
     SlotEffect slot;
     FillPlan fill;

@@ -32,8 +32,18 @@ inline Study large() {
     study.dispenser_width = study.scene.width = 0.06;
     study.scene.dispenser_depth = 0.04;
     study.build.thickness = 0.5e-3;
+    study.build.engraving = 0.1e-3;
     study.build.bend_radius = 1e-3;
     study.build.k_factor = din_k_factor(1e-3, 0.5e-3);
+    return study;
+}
+
+/// The same, its plates held by tabs.
+inline Study with_tabs(Study study) {
+    study.build.tabs = true;
+    study.build.slot_depth = 5e-3;
+    study.build.tab_depth = 3e-3;
+    study.build.end_clearance = 12e-6;
     return study;
 }
 
@@ -63,6 +73,26 @@ inline FinishedDesign smooth(Study& study) {
     finished.design.partition.points =
         spline_through(std::vector<PlanPoint>{{0, 0.01}, {0.03, 0.015}, {0.06, 0.04}, {0.1, 0.05}});
     return finished;
+}
+
+struct Built {
+    Study study;
+    FinishedDesign finished;
+};
+/// Straight, bent, a pair, a printed curve; each in slots and by tabs.
+inline std::vector<Built> every_kind() {
+    Study printed = large();
+    const FinishedDesign curve = smooth(printed);
+    std::vector<Built> all;
+    for (const Built& one : {Built{large(), straight(large(), 20)},
+                             {large(), straight(large(), -35)},
+                             {large(), bent()},
+                             {large(), pair_of_curves()},
+                             {printed, curve}}) {
+        all.push_back(one);
+        all.push_back({with_tabs(one.study), one.finished});
+    }
+    return all;
 }
 
 inline double length_of(const std::vector<PlanPoint>& line) {

@@ -39,7 +39,7 @@ TEST(Dxf, reads_back_as_outline_and_bends_on_their_layers) {
     const auto plates = plates_of(study, pair_of_curves().design);
     std::vector<FlatPattern> flats;
     for (const Plate& plate : plates) flats.push_back(flat_pattern(plate));
-    const std::string text = dxf_text(flats, {"NOT VERIFIED: for a test \u00b1", "GW-01234567", {"note"}});
+    const std::string text = dxf_text(flats, {"NOT VERIFIED: for a test \u00b1", {"note"}});
     EXPECT_THAT(text, StartsWith("999\nNOT VERIFIED: for a test ?\n"));
     for (const char c : text) ASSERT_TRUE(c == '\n' || (c >= 0x20 && c < 0x7f));
     std::istringstream stream(text);
@@ -59,8 +59,8 @@ TEST(Dxf, reads_back_as_outline_and_bends_on_their_layers) {
         if (code == 2 && kind == "LAYER" && in_layers) declared.insert(value);
         if (code == 8) layer = value;
         if (code == 8) layers.insert(value);
-        if (code == 10 && kind == "VERTEX") outline.push_back({std::stod(value), 0});
-        if (code == 20 && kind == "VERTEX") outline.back()[1] = std::stod(value);
+        if (code == 10 && kind == "VERTEX" && layer == "CUT") outline.push_back({std::stod(value), 0});
+        if (code == 20 && kind == "VERTEX" && layer == "CUT") outline.back()[1] = std::stod(value);
         if (code == 10 && kind == "LINE" && layer == "BEND") bends.push_back(std::stod(value));
     }
     for (const std::string& used : layers) EXPECT_TRUE(declared.contains(used)) << used;

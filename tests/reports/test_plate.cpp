@@ -54,6 +54,39 @@ TEST(Plate, a_steep_partition_ends_on_the_side_walls) {
     EXPECT_NEAR(plates[0].ends[1].slant, 20 * kDegree, 1e-12);
 }
 
+TEST(Plate, held_by_tabs_its_ends_are_cut_off_beside_the_walls) {
+    const Study study = with_tabs(large());
+    const double t = study.build.thickness, angle = 20 * kDegree, c = study.build.end_clearance;
+    const Plate plate = plates_of(study, straight(study, 20).design)[0];
+    ASSERT_TRUE(plate.tabs());
+    EXPECT_EQ(plate.z_seat, -3e-3);
+    // cut square: the corner that leads stays one clearance off the wall
+    const double gap = (c + t / 2 * std::sin(angle)) / std::cos(angle);
+    const double below = 0.1 / std::cos(angle) - 2 * gap;
+    EXPECT_NEAR(plate.middle_length() - plate.ends[0].cut - plate.ends[1].cut, below, 1e-12);
+    EXPECT_NEAR(plate.volume(),
+                t * (plate.middle_length() * (study.build.grip + 3e-3) +
+                     below * (0.04 - study.build.clearance - 3e-3)),
+                1e-18);
+    EXPECT_EQ(plate.faces(), 10);
+    // the plate rises along x: its left corner leads at the rear wall, its right one at the platform's
+    EXPECT_EQ(plate.ends[0].gap_side, 1);
+    EXPECT_EQ(plate.ends[1].gap_side, 0);
+    const auto volume = chamber_volumes(study, straight(study, 20).design, {plate}, {0, 10e-3});
+    const auto area = chamber_areas(study, straight(study, 20).design, {plate});
+    EXPECT_NEAR(volume[0], area[0] * 0.04 + t * gap * 0.037, 1e-15);
+    EXPECT_NEAR(volume[1], area[1] * 0.03 + t * gap * 0.030, 1e-15);  // filled to below the seats
+    const FlatPattern flat = flat_pattern(plate);
+    const auto outline = flat.outline();
+    ASSERT_EQ(outline.size(), 8u);
+    double twice = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const PlanPoint &p = outline[i], &q = outline[(i + 1) % 8];
+        twice += p.x * q.y - q.x * p.y;
+    }
+    EXPECT_NEAR(twice / 2 * t, plate.volume(), 1e-15);  // straight: the blank is the plate
+}
+
 TEST(Plate, bends_keep_the_strip_as_wide_as_the_sheet) {
     const Study study = large();
     const auto plates = plates_of(study, bent().design);

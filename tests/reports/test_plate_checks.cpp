@@ -13,13 +13,7 @@ using testing::IsEmpty;
 using testing::StartsWith;
 
 TEST(PlateChecks, pass_for_what_can_be_built) {
-    Study study = large();
-    Study printed = large();
-    const FinishedDesign curve = smooth(printed);
-    for (const auto& [s, f] : {std::pair{study, straight(study, 20)},
-                               {study, bent()},
-                               {study, pair_of_curves()},
-                               {printed, curve}})
+    for (const auto& [s, f] : every_kind())
         for (const PlateCheck& check : plate_checks(s, plates_of(s, f.design)))
             EXPECT_TRUE(check.passed) << check.id << ": " << check.text;
 }
@@ -58,7 +52,8 @@ TEST(PlateChecks, each_fails_where_it_should) {
                 testing::Contains("outline"));
     EXPECT_THAT(failed(study, {{0, 0.0301}, {0.1, 0.0301}}, {{0.1, 0.0298}, {0, 0.0298}}),
                 ElementsAre("plates_apart"));
-    EXPECT_THAT(failed(study, {{0, 0.02}, {0.05, 0.0001}, {0.1, 0.02}}), ElementsAre("in_the_well"));
+    EXPECT_THAT(failed(study, {{0, 0.02}, {0.05, 0.0001}, {0.1, 0.02}}),
+                ElementsAre("in_the_well", "withdrawal"));
     EXPECT_THAT(failed(study, {{0, 0.0002}, {0.1, 0.02}}), ElementsAre("slot_corner"));
     EXPECT_THAT(failed(study, {{0, 0.02}, {0.003, 0.03}, {0.1, 0.03}}), testing::Contains("slot_angle"));
     Study coarse = study;
@@ -67,6 +62,23 @@ TEST(PlateChecks, each_fails_where_it_should) {
     Study leaky = study;
     leaky.build.clearance = finest_d10(study);
     EXPECT_THAT(failed(leaky, {{0, 0.02}, {0.1, 0.03}}), ElementsAre("clearance"));
+    // the machine around it, where it is known
+    Study machine = study;
+    machine.build.wall_thickness = machine.build.slot_depth;
+    EXPECT_THAT(failed(machine, {{0, 0.02}, {0.1, 0.03}}), ElementsAre("wall_thickness"));
+    machine.build.wall_thickness = machine.build.slot_depth + 1e-6;
+    EXPECT_THAT(failed(machine, {{0, 0.02}, {0.1, 0.03}}), IsEmpty());
+    machine.build.headroom = 0.04 + machine.build.grip - machine.build.clearance - 1e-6;
+    EXPECT_THAT(failed(machine, {{0, 0.02}, {0.1, 0.03}}), ElementsAre("withdrawal"));
+    machine.build.headroom += 2e-6;
+    EXPECT_THAT(failed(machine, {{0, 0.02}, {0.1, 0.03}}), IsEmpty());
+    // a bend 1 mm inside the wall: its arc takes 0.4 mm of it, a tab's cut half the sheet at this slant
+    const Study tabs = with_tabs(study);
+    EXPECT_THAT(failed(tabs, {{0, 0.02}, {0.001, 0.0205}, {0.1, 0.03}}), IsEmpty());
+    EXPECT_THAT(failed(tabs, {{0, 0.02}, {0.0003, 0.02015}, {0.1, 0.0202}}), ElementsAre("tabs"));
+    Study wide = tabs;
+    wide.build.end_clearance = finest_d10(study);
+    EXPECT_THAT(failed(wide, {{0, 0.02}, {0.1, 0.03}}), ElementsAre("end_gap"));
 }
 
 TEST(PlateChecks, general_tolerances_are_iso_2768_m) {
