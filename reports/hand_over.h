@@ -38,7 +38,7 @@ struct ChamberPlan {
     bool measured = false;      ///< false: solid density x simulated packing
     double mass = 0;            ///< [kg]
     double mass_tolerance = 0;  ///< +- [kg]: the density's, and the end offsets' on the area
-    double top_up = 0;          ///< into the slot once the plate is out [kg]
+    double top_up = 0;          ///< into what the plate took, slots or notches with it, once it is out [kg]
 };
 
 struct FillPlan {
@@ -64,6 +64,7 @@ struct HandOver {
         mark;  ///< "NOT VERIFIED: verdict undecided"; empty when the target is met and all checks pass
     std::string first_line;  ///< mark, or what the simulation says; opens each file
     std::string make;        ///< "straight sheet" | "bent sheet" | "printed wall"
+    PartitionCurve partition;
     std::vector<Plate> plates;
     std::vector<FlatPattern> flats;
     std::vector<std::array<MarkText, 2>> marks;  ///< of each plate, on side A and side B
@@ -81,6 +82,10 @@ HandOver hand_over(const Study& study, const FinishedDesign& finished);
 
 /// "12.3 mg", "4.56 g", "1.23 kg".
 std::string mass_text(double kilograms);
+/// "2.23 +- 0.08 kg": both in one unit, as many decimals as the tolerance has two digits of.
+std::string mass_text(double kilograms, double tolerance);
+/// "4.285 g/cm3".
+std::string density_text(double kilograms_per_cubic_metre);
 /// "+-0.1" of a dimension in mm.
 std::string tolerance_text(double length);
 

@@ -33,7 +33,10 @@ TEST(HandOver, what_to_fill_follows_from_areas_densities_and_dosage) {
     // both ends at 30 mm, +-0.2 mm each; half the plate's length for each end
     const double moved = 2 * 0.5 * over.plates[0].middle_length() * 0.2e-3;
     EXPECT_NEAR(a.mass_tolerance, 0.02 * a.mass + moved * depth * 4400, 1e-12);
-    EXPECT_NEAR(a.top_up, 0.1 * study.build.thickness / 2 * depth * 4400, 1e-12);
+    // half of what the plate took in the well, half of the two slots
+    const double slots =
+        2 * study.build.slot_depth * (study.build.thickness + 2 * study.build.slot_clearance);
+    EXPECT_NEAR(a.top_up, (0.1 * study.build.thickness / 2 + slots / 2) * depth * 4400, 1e-12);
     const double rise = 3 * study.scene.layer_thickness;
     EXPECT_NEAR(over.fill.rise, rise, 1e-15);
     EXPECT_EQ(over.fill.layers, static_cast<int>(std::floor((depth - 1.05e-3) / rise)));
@@ -46,6 +49,28 @@ TEST(HandOver, what_to_fill_follows_from_areas_densities_and_dosage) {
     EXPECT_NEAR(*over.fill.overflow_a, 0.25 * 7980 / (0.25 * 7980 + 0.75 * 8200), 1e-12);
     EXPECT_THAT(fill_html(study, over), HasSubstr("SIMULATED: MEASURE BEFORE USE"));
     EXPECT_THAT(fill_html(study, over), HasSubstr("never return it to either chamber"));
+}
+
+TEST(HandOver, a_mass_and_its_tolerance_share_unit_and_decimals) {
+    EXPECT_EQ(mass_text(2.23194, 0.07974), "2.232 \u00b1 0.080 kg");
+    EXPECT_EQ(mass_text(0.01234, 0.0012), "12.3 \u00b1 1.2 g");
+    EXPECT_EQ(mass_text(3.4e-6, 12e-6), "3 \u00b1 12 mg");
+    EXPECT_EQ(mass_text(0.5, 0.000123), "500.00 \u00b1 0.12 g");
+}
+
+TEST(HandOver, says_how_a_plate_with_tabs_is_put_in_and_checked) {
+    const Study study = with_tabs(large());
+    const std::string html = fill_html(study, hand_over(study, straight(study, 20)));
+    EXPECT_THAT(html, HasSubstr("into the notches of the rim"));
+    EXPECT_THAT(html, HasSubstr("lower it by 12.5 um"));
+    EXPECT_THAT(html, HasSubstr("gap between the plate&#39;s ends and the walls"));
+    EXPECT_THAT(html, Not(HasSubstr("with the slots in the walls")));
+    EXPECT_THAT(fill_html(large(), hand_over(large(), straight(large(), 20))),
+                HasSubstr("with the slots in the walls"));
+    // a plate across the dispenser has no arrow to look for
+    EXPECT_THAT(html, HasSubstr("the engraved arrow"));
+    EXPECT_THAT(fill_html(large(), hand_over(large(), straight(large(), 80))),
+                Not(HasSubstr("the engraved arrow")));
 }
 
 TEST(HandOver, is_marked_unless_the_target_is_met_by_what_can_be_built) {
