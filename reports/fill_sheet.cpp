@@ -228,11 +228,13 @@ std::vector<SheetBlock> fill_blocks(const Study& study, const HandOver& over) {
              : fmt::format("A {}, B {} (platform / dispenser area {:.4g})", mm(plan.chambers[0].rise),
                            mm(plan.chambers[1].rise), plan.area_ratio)},
         {"the fill lasts for",
-         fmt::format("{} layers; then {} are left below the rim, no less than the spreads had", plan.layers,
+         fmt::format("{} layers; then {} are left below the rim, no less than in the simulation", plan.layers,
                      mm(plan.left_over))},
         {"lifted for each layer", mass_text(plan.dosed)},
         {"into the overflow, each layer",
          plan.overflow ? mass_text(*plan.overflow) : "not known: no spread measured it"},
+        {"into the overflow, the whole fill",
+         plan.overflow ? mass_text(*plan.overflow * plan.layers) : "not known: no spread measured it"},
         {"of it A : B by mass", plan.overflow_a ? fmt::format("{:.0f} : {:.0f} %", 100 * *plan.overflow_a,
                                                               100 * (1 - *plan.overflow_a))
                                                 : "not known: no confirming spread"}};

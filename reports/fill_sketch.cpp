@@ -55,10 +55,9 @@ void draw_fill_sketch(CairoSheet& sheet, const Study& study, const HandOver& ove
     sheet.tip({to.x + 3, to.y - 3}, 1, 0, 4);
     sheet.text({0.5 * (from.x + to.x), from.y - 4.5}, "spreading direction",
                {.size = 2.5, .anchor = Anchor::middle});
-    sheet.text({at({0, 0}).x - 2, y0 - 0.5 * width * scale + 8}, "rear",
+    sheet.text({at({0, 0}).x - 2, y0 - 1}, "rear",
                {.size = 2.5, .anchor = Anchor::end, .colour = kSheetGrey});
-    sheet.text({at({length, 0}).x + 2, y0 - 0.5 * width * scale + 8}, "platform",
-               {.size = 2.5, .colour = kSheetGrey});
+    sheet.text({at({length, 0}).x + 2, y0 - 1}, "platform", {.size = 2.5, .colour = kSheetGrey});
 }
 
 }  // namespace gradwright

@@ -135,9 +135,9 @@ std::vector<std::string> steps_of(const Study& study, const HandOver& over) {
             "in = volume in the table x density measured.");
     const std::vector<std::string> rest = {
         fmt::format(
-            "Clean and dry dispenser, slots and {}. Check that the engraving reads {} and that no edge has "
+            "Clean and dry dispenser, {} and {}. Check that the engraving reads {} and that no edge has "
             "a burr higher than {:.0f} um.",
-            plates, over.id, finest_d10(study) * 1e6),
+            build.tabs ? "notches" : "slots", plates, over.id, finest_d10(study) * 1e6),
         fmt::format("Lower the dispenser floor to {} below the rim.", mm(plan.piston_start)),
         fmt::format(
             "Put the {} in from above, into {}: SIDE A towards chamber A{}. {}", plates,
@@ -168,20 +168,25 @@ std::vector<std::string> steps_of(const Study& study, const HandOver& over) {
                     "{} back onto its own side.",
                     plates, mm(study.scene.dispenser_depth), pair ? "them" : "it"));
     steps.push_back(fmt::format(
-        "Top up the trough that is left, with the {} in the walls, flush with the rim: about {} of "
+        "Top up the trough that is left, with the {} in the walls, flush with {}: about {} of "
         "A's powder on A's side, {} of B's on B's.",
-        build.tabs ? "notches" : "slots", mass_text(plan.chambers[0].top_up),
-        mass_text(plan.chambers[1].top_up)));
+        build.tabs ? "notches" : "slots",
+        plan.chambers[0].level > 0 || plan.chambers[1].level > 0 ? "the powder beside it" : "the rim",
+        mass_text(plan.chambers[0].top_up), mass_text(plan.chambers[1].top_up)));
     if (plan.chambers[0].level == plan.chambers[1].level)
         steps.push_back(
             "Level with a straight edge along the spreading direction, never across it; wipe the rim.");
     else
         steps.push_back(
             "Level each chamber to its own height along the spreading direction, never across it.");
-    steps.push_back(
-        fmt::format("For each layer raise the floor by {} (dosage factor x layer thickness x platform / "
-                    "dispenser area, {:.4g}).",
-                    mm(plan.rise), plan.area_ratio));
+    steps.push_back(fmt::format(
+        "For each layer raise {} (dosage factor x layer thickness x platform / dispenser area{}: {:.4g} x "
+        "{} x {:.4g}).",
+        plan.one_floor() ? "the floor by " + mm(plan.rise)
+                         : fmt::format("piston A by {}, piston B by {}", mm(plan.chambers[0].rise),
+                                       mm(plan.chambers[1].rise)),
+        plan.one_floor() ? "" : ", times each piston's dose", over.dosage_factor,
+        mm(plan.rise / (over.dosage_factor * plan.area_ratio)), plan.area_ratio));
     return steps;
 }
 
@@ -214,9 +219,9 @@ std::vector<Acceptance> acceptance_of(const Study& study, const HandOver& over) 
                        mass_text(chamber.mass, chamber.mass_tolerance),
                        "too little: powder bridges, loosen it with a thin rod and fill up; too much: it was "
                        "compacted, empty "
-                       "the chamber and fill it loosely; still off: measure the bulk density, set "
-                       "partition_build.bulk_density and write this "
-                       "sheet again"});
+                       "the chamber and fill it loosely; still off: measure the bulk density; whoever issued "
+                       "this sheet writes "
+                       "it anew with the measured one (partition_build.bulk_density)"});
     }
     all.push_back(
         {"surface after levelling, in oblique light", "no trough, no powder of one side on the other",
@@ -260,6 +265,7 @@ std::string tolerance_text(double length) {
 HandOver hand_over(const Study& study, const FinishedDesign& finished) {
     HandOver over;
     over.partition = finished.design.partition;
+    over.dosage_factor = finished.design.dosage_factor;
     over.plates = plates_of(study, finished.design);
     if (over.plates.empty())
         throw std::invalid_argument("the partition does not cross the dispenser: there is nothing to build");

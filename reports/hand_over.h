@@ -65,6 +65,7 @@ struct HandOver {
     std::string first_line;  ///< mark, or what the simulation says; opens each file
     std::string make;        ///< "straight sheet" | "bent sheet" | "printed wall"
     PartitionCurve partition;
+    double dosage_factor = 2;
     std::vector<Plate> plates;
     std::vector<FlatPattern> flats;
     std::vector<std::array<MarkText, 2>> marks;  ///< of each plate, on side A and side B
