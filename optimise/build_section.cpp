@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace gradwright {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 // What still counts as a plate that hands draw out of a dispenser [m].
 constexpr double kThinnest = 0.05e-3, kThickest = 3e-3, kLongestGrip = 0.5;
 constexpr double kThinnestPrint = 0.4e-3;  // one bead of a common 0.4 mm nozzle
+constexpr double kDeepestMark = 0.1e-3;
 
 std::string mm(double si) {
     return format_quantity(si, "length");
@@ -42,6 +44,59 @@ void read_densities(TomlReader& reader, Section& section, Study& study) {
                             "measure it loose, as it is filled in");
     }
     density.finish();
+}
+
+/// Slots over the whole depth, or tabs in notches of the rim; and what is known of the machine around them.
+void read_hold(TomlReader& reader, Section& section, Study& study) {
+    PartitionBuild& build = study.build;
+    const double depth = study.scene.dispenser_depth, finest = finest_d10(study);
+    build.tabs =
+        section.choice("hold", {"slots", "tabs"}, "slots",
+                       "slots over the walls' whole depth keep the powders apart at the ends") == "tabs";
+    build.slot_depth = section.quantity(
+        "slot_depth", "length",
+        build.tabs ? Default{3e-3, "our default: a tab that carries the plate"}
+                   : Default{1e-3, "our default: holds a sheet upright; the walls must be thicker"},
+        Range::between(0.2e-3, 50e-3));
+    if (build.tabs) {
+        build.tab_depth = section.quantity(
+            "tab_depth", "length",
+            {std::min(3e-3, depth / 4), "notches in the rim: 3 mm deep, at most a quarter of the dispenser"},
+            Range::between(0.1e-3, kLongestGrip));
+        build.end_clearance =
+            section.quantity("end_clearance", "length",
+                             {0.5 * finest, "between ends and walls below the tabs: half the finest D10"},
+                             Range::between(0, 1e-3));
+    } else if (reader.sound({"partition_build.hold"})) {
+        for (const char* key : {"tab_depth", "end_clearance"})
+            section.refuse(key, "belongs to tabs, and this plate stands in slots",
+                           "hold = \"tabs\", or leave it out");
+    }
+    if (!build.tabs)
+        for (const char* key : {"tab_depth", "end_clearance"}) section.know(key);
+    for (const auto& [key, field, what] :
+         {std::tuple{"wall_thickness", &build.wall_thickness, "slots or notches must leave some of it"},
+          std::tuple{"headroom", &build.headroom, "above the rim: the plate is drawn out into it"}}) {
+        if (section.has(key)) {
+            *field = section.quantity(key, "length", required("such as \"200 mm\""), Range::above_to(0, 10));
+        } else {
+            section.know(key);
+            reader.record(
+                {section.path(key), "not given", "", "default", fmt::format("{}; not checked", what)});
+        }
+    }
+    const std::string at = "partition_build.";
+    if (!build.tabs) return;
+    if (reader.sound({at + "tab_depth", "machine"}) && !(build.tab_depth < depth))
+        reader.conflict({at + "tab_depth"},
+                        fmt::format("the tabs would sit {} below the rim of a dispenser {} deep",
+                                    mm(build.tab_depth), mm(depth)),
+                        fmt::format("less than {}, or hold = \"slots\"", mm(depth)));
+    if (reader.sound({at + "end_clearance", "powder"}) && !(build.end_clearance < finest))
+        reader.conflict({at + "end_clearance"},
+                        fmt::format("{} lets powder past the plate's ends: the finest D10 is {}",
+                                    mm(build.end_clearance), mm(finest)),
+                        fmt::format("at most {}", mm(0.5 * finest)));
 }
 
 }  // namespace
@@ -83,9 +138,7 @@ void read_partition_build(TomlReader& reader, Section& root, Study& study) {
     build.clearance =
         section.quantity("clearance", "length", {0.5 * finest, "under the plate: half the finest D10"},
                          Range::between(0, 1e-3));
-    build.slot_depth = section.quantity(
-        "slot_depth", "length", {1e-3, "our default: holds a sheet upright; the walls must be thicker"},
-        Range::between(0.2e-3, 50e-3));
+    read_hold(reader, section, study);
     build.slot_clearance =
         section.quantity("slot_clearance", "length",
                          {0.25 * finest, "each side: with its own tolerance three of them stay below D10"},
@@ -93,6 +146,11 @@ void read_partition_build(TomlReader& reader, Section& root, Study& study) {
     build.least_slot_width = section.quantity("least_slot_width", "length",
                                               {0.3e-3, "our default: wire of 0.25 mm and its spark gap"},
                                               Range::between(0, 10e-3));
+    build.engraving =
+        section.quantity("engraving", "length",
+                         {std::min(kDeepestMark, build.thickness / 5),
+                          "depth of number, sides and arrow: a fifth of the thickness, at most 0.1 mm"},
+                         Range::between(0, kThickest / 3));
     read_densities(reader, section, study);
     build.density_tolerance =
         section.number("density_tolerance",
@@ -123,6 +181,12 @@ void read_partition_build(TomlReader& reader, Section& root, Study& study) {
                         "plate's ends: the finest D10 is {}",
                         mm(build.slot_clearance), mm(finest)),
             fmt::format("at most {}", mm(0.25 * finest)));
+    if (reader.sound({at + "engraving", at + "thickness"}) &&
+        !(3 * build.engraving <= build.thickness * (1 + 1e-9)))
+        reader.conflict({at + "engraving", at + "thickness"},
+                        fmt::format("marks of {} on both sides leave less than a third of {}",
+                                    mm(build.engraving), mm(build.thickness)),
+                        fmt::format("at most {}", mm(build.thickness / 3)));
     const double slot = build.thickness + 2 * build.slot_clearance;
     // a plate that the study spreads needs no workshop: unasked, this is left to the checks of `spec`
     const bool asked = reader.given(at + "thickness") || reader.given(at + "least_slot_width");

@@ -91,9 +91,15 @@ struct PartitionBuild {
     double bend_radius = 0.3e-3;       ///< inside a bend [m]
     double k_factor = 0.325;           ///< neutral line from the inside of a bend, in thicknesses [-]
     double clearance = 12.5e-6;        ///< between the plate's lower edge and the dispenser floor [m]
-    double slot_depth = 1e-3;          ///< how far the plate's ends reach into the dispenser's walls [m]
+    bool tabs = false;                 ///< held by tabs in notches of the rim; false: by slots over its depth
+    double slot_depth = 1e-3;          ///< how far slots or notches reach into the dispenser's walls [m]
+    double tab_depth = 0.25e-3;        ///< of the notches below the rim: where the tabs sit [m]
+    double end_clearance = 12.5e-6;    ///< below the tabs, between the plate's ends and the walls [m]
     double slot_clearance = 6e-6;      ///< on each side of the plate in its slot [m]
     double least_slot_width = 0.3e-3;  ///< narrowest slot the workshop can cut [m]
+    double engraving = 60e-6;          ///< depth of number, sides and arrow [m]; 0 = marked on the surface
+    double wall_thickness = 0;         ///< of the dispenser's walls [m]; 0 = not known
+    double headroom = 0;               ///< free height above the rim [m]; 0 = not known
     std::array<double, 2> bulk_density = {0, 0};  ///< of what fills chamber A, B [kg/m3]; 0 = not measured
     double density_tolerance = 0.03;              ///< share by which a bulk density repeats [-]
     std::string owner, creator, approved, date;   ///< title block, as given; empty = to be filled in by hand

@@ -135,23 +135,16 @@ std::string dxf_text(const std::vector<FlatPattern>& patterns, const DxfNotes& n
     for (const FlatPattern& flat : patterns) {
         const double length = flat.length * 1e3, height = flat.height * 1e3, rim = flat.rim * 1e3;
         const double letter = std::clamp(std::min(0.08 * length, 0.1 * (height - rim)), 0.2, 3.5);
-        dxf.closed("CUT", {{0, base}, {length, base}, {length, base + height}, {0, base + height}});
+        const auto closed = [&](const char* layer, std::vector<PlanPoint> points) {
+            for (PlanPoint& p : points) p = {1e3 * p.x, 1e3 * p.y + base};
+            dxf.closed(layer, points);
+        };
+        closed("CUT", flat.outline());
         for (const FlatBend& bend : flat.bends)
             dxf.line("BEND", bend.at * 1e3, base, bend.at * 1e3, base + height);
-        // engraved above the rim, where no powder touches it
-        double v = base + height - 2 * letter;
-        dxf.words("ETCH", 0.5 * letter, v, letter, notes.id + " " + flat.name);
-        v -= 2 * letter;
-        dxf.words("ETCH", 0.5 * letter, v, letter, "SIDE B");
-        if (flat.arrow != 0) {
-            v -= letter;
-            const double tail = flat.arrow > 0 ? 0.1 * length : 0.9 * length,
-                         tip = flat.arrow > 0 ? 0.9 * length : 0.1 * length;
-            const double back = tip - flat.arrow * letter;
-            dxf.line("ETCH", tail, v, tip, v);
-            dxf.line("ETCH", back, v + 0.4 * letter, tip, v);
-            dxf.line("ETCH", back, v - 0.4 * letter, tip, v);
-        }
+        // as outlines: no font of the workshop's machine comes between
+        for (const FlatMark& mark : flat.marks)
+            closed("ETCH", {{mark.u0, mark.v0}, {mark.u1, mark.v0}, {mark.u1, mark.v1}, {mark.u0, mark.v1}});
         const double right = length + letter;
         double line = base + height - letter;
         const auto note = [&](const std::string& words) {
@@ -163,6 +156,9 @@ std::string dxf_text(const std::vector<FlatPattern>& patterns, const DxfNotes& n
             note(fmt::format("bend at {:.3f}: {:.2f} deg towards {}, allowance {:.4f}", bend.at * 1e3,
                              std::abs(bend.turn) * 180 / std::numbers::pi, bend.turn > 0 ? "A" : "B",
                              bend.allowance * 1e3));
+        if (flat.seat > 0)
+            note(fmt::format("tabs {:.3f} and {:.3f} long, {:.3f} above the lower edge", flat.cut[0] * 1e3,
+                             flat.cut[1] * 1e3, flat.seat * 1e3));
         dxf.line("DIM", -letter, base + rim, 0, base + rim);
         dxf.words("DIM", -letter, base + rim + 0.2 * letter, 0.6 * letter, "rim");
         dxf.line("DIM", 0, base - letter, length, base - letter);

@@ -10,7 +10,6 @@ namespace gradwright {
 
 struct DxfNotes {
     std::string title;               ///< first line of the file, a comment
-    std::string id;                  ///< engraved
     std::vector<std::string> lines;  ///< on the layer DIM, under the patterns
 };
 

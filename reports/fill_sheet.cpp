@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/fill_sketch.h"
 #include "reports/partition_drawing.h"
 #include "reports/wording.h"
 
@@ -31,7 +32,7 @@ std::string title_of(const Study& study, const HandOver& over) {
 /// a block's height is known before it is drawn.
 class Pages {
   public:
-    explicit Pages(const std::string& footer) : footer_(footer) {}
+    Pages(const std::string& footer, DrawPage sketch) : footer_(footer), sketch_(std::move(sketch)) {}
 
     void add(const SheetBlock& block) { blocks_.push_back(block); }
 
@@ -48,14 +49,17 @@ class Pages {
         y_ += 7;
         put(sheet, {kLeft, y_ + 1}, subtitle, {.size = 3, .colour = kGrey});
         y_ += 7;
+        if (shown()) sketch_(sheet);
+        y_ += kSketch;
         for (const SheetBlock& block : blocks_) draw_block(sheet, block);
         foot(sheet);
         return page_ + 1;
     }
 
-  private:
     static constexpr double kLeft = 18, kRight = 192, kTop = 14, kBottom = 280;
+    static constexpr double kSketchTop = kTop + 20, kSketch = 52;  ///< below the head; its height
 
+  private:
     bool shown() const { return page_ == wanted_; }
     void put(CairoSheet& sheet, SheetPoint at, const std::string& words, const CairoSheet::Look& look) {
         if (shown()) sheet.text(at, words, look);
@@ -165,6 +169,7 @@ class Pages {
     }
 
     std::string footer_;
+    DrawPage sketch_;
     std::vector<SheetBlock> blocks_;
     int page_ = 0, wanted_ = 0;
     double y_ = 0;
@@ -191,14 +196,13 @@ std::vector<SheetBlock> fill_blocks(const Study& study, const HandOver& over) {
     for (const int i : {0, 1}) {
         const ChamberPlan& c = plan.chambers[static_cast<std::size_t>(i)];
         measured = measured && c.measured;
-        chambers.rows.push_back({i == 0 ? "A (left)" : "B (right)", c.powder,
-                                 fmt::format("{} ({:.4g} mm² x {})", volume_text(c.volume), c.area * 1e6,
-                                             mm(plan.piston_start - c.level)),
-                                 c.level > 0 ? mm(c.level) + " below the rim" : "to the rim",
-                                 fmt::format("{:.0f} kg/m³{}", c.bulk_density,
-                                             c.measured ? ", measured" : ", SIMULATED: MEASURE BEFORE USE"),
-                                 fmt::format("{} ± {}", mass_text(c.mass), mass_text(c.mass_tolerance)),
-                                 "≈ " + mass_text(c.top_up)});
+        chambers.rows.push_back(
+            {i == 0 ? "A (left)" : "B (right)", c.powder,
+             fmt::format("{} ({:.4g} mm² x {})", volume_text(c.volume), c.area * 1e6,
+                         mm(plan.piston_start - c.level)),
+             c.level > 0 ? mm(c.level) + " below the rim" : "to the rim",
+             density_text(c.bulk_density) + (c.measured ? ", measured" : ", SIMULATED: MEASURE BEFORE USE"),
+             mass_text(c.mass, c.mass_tolerance), "≈ " + mass_text(c.top_up)});
     }
     chambers.note = fmt::format(
         "Left and right as seen along the plate from its first end, where its letter stands (larger y is "
@@ -224,11 +228,13 @@ std::vector<SheetBlock> fill_blocks(const Study& study, const HandOver& over) {
              : fmt::format("A {}, B {} (platform / dispenser area {:.4g})", mm(plan.chambers[0].rise),
                            mm(plan.chambers[1].rise), plan.area_ratio)},
         {"the fill lasts for",
-         fmt::format("{} layers; then {} are left below the rim, no less than the spreads had", plan.layers,
+         fmt::format("{} layers; then {} are left below the rim, no less than in the simulation", plan.layers,
                      mm(plan.left_over))},
         {"lifted for each layer", mass_text(plan.dosed)},
         {"into the overflow, each layer",
          plan.overflow ? mass_text(*plan.overflow) : "not known: no spread measured it"},
+        {"into the overflow, the whole fill",
+         plan.overflow ? mass_text(*plan.overflow * plan.layers) : "not known: no spread measured it"},
         {"of it A : B by mass", plan.overflow_a ? fmt::format("{:.0f} : {:.0f} %", 100 * *plan.overflow_a,
                                                               100 * (1 - *plan.overflow_a))
                                                 : "not known: no confirming spread"}};
@@ -244,7 +250,7 @@ std::vector<SheetBlock> fill_blocks(const Study& study, const HandOver& over) {
     }
     blocks.push_back({"Record",
                       {"measured", "A", "B"},
-                      {{"bulk density, kg/m³", "", ""},
+                      {{"bulk density, g/cm³", "", ""},
                        {"mass filled in", "", ""},
                        {"mass topped up", "", ""},
                        {"lot", "", ""},
@@ -278,6 +284,10 @@ h2{{font-size:1.1em;margin:1.4em 0 .3em}}
 )",
         escaped(over.first_line), escaped(title_of(study, over)), over.mark.empty() ? "" : " doubt",
         escaped(subtitle_of(study)));
+    const std::string sketch = svg_of(120, Pages::kSketch + 6, [&](CairoSheet& sheet) {
+        draw_fill_sketch(sheet, study, over, {2, 2, 118, Pages::kSketch + 4});
+    });
+    out += sketch.substr(sketch.find("<svg"));
     for (const SheetBlock& block : fill_blocks(study, over)) {
         out += fmt::format("<h2>{}</h2>\n", escaped(block.heading));
         if (block.numbered) {
@@ -301,7 +311,11 @@ h2{{font-size:1.1em;margin:1.4em 0 .3em}}
 }
 
 std::string fill_pdf(const Study& study, const HandOver& over) {
-    Pages pages(fmt::format("{}, {}", over.id, study.name));
+    Pages pages(fmt::format("{}, {}", over.id, study.name), [&](CairoSheet& sheet) {
+        draw_fill_sketch(
+            sheet, study, over,
+            {Pages::kLeft, Pages::kSketchTop, Pages::kRight, Pages::kSketchTop + Pages::kSketch});
+    });
     for (const SheetBlock& block : fill_blocks(study, over)) pages.add(block);
     int count = 1;
     const auto draw = [&](CairoSheet& sheet, int page) {

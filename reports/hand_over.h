@@ -10,6 +10,7 @@
 #include "reports/flat_pattern.h"
 #include "reports/plate.h"
 #include "reports/plate_checks.h"
+#include "reports/plate_marks.h"
 
 namespace gradwright {
 
@@ -29,15 +30,15 @@ struct FinishedDesign {
 struct ChamberPlan {
     std::string powder;         ///< "IN718", or the premix
     double ideal_area = 0;      ///< in plan, beside a partition of no thickness [m2]
-    double area = 0;            ///< beside the plate [m2]
+    double area = 0;            ///< beside the plate, mean over the height [m2]
     double level = 0;           ///< of the powder below the rim [m]
     double rise = 0;            ///< of its piston for each layer [m]; the same for both with one floor
-    double volume = 0;          ///< area x (depth - level) [m3]
+    double volume = 0;          ///< from the floor to the level, beside the plate [m3]
     double bulk_density = 0;    ///< [kg/m3]
     bool measured = false;      ///< false: solid density x simulated packing
     double mass = 0;            ///< [kg]
     double mass_tolerance = 0;  ///< +- [kg]: the density's, and the end offsets' on the area
-    double top_up = 0;          ///< into the slot once the plate is out [kg]
+    double top_up = 0;          ///< into what the plate took, slots or notches with it, once it is out [kg]
 };
 
 struct FillPlan {
@@ -63,8 +64,11 @@ struct HandOver {
         mark;  ///< "NOT VERIFIED: verdict undecided"; empty when the target is met and all checks pass
     std::string first_line;  ///< mark, or what the simulation says; opens each file
     std::string make;        ///< "straight sheet" | "bent sheet" | "printed wall"
+    PartitionCurve partition;
+    double dosage_factor = 2;
     std::vector<Plate> plates;
     std::vector<FlatPattern> flats;
+    std::vector<std::array<MarkText, 2>> marks;  ///< of each plate, on side A and side B
     std::vector<PlateCheck> checks;
     SlotEffect slot;
     FillPlan fill;
@@ -79,6 +83,10 @@ HandOver hand_over(const Study& study, const FinishedDesign& finished);
 
 /// "12.3 mg", "4.56 g", "1.23 kg".
 std::string mass_text(double kilograms);
+/// "2.23 +- 0.08 kg": both in one unit, as many decimals as the tolerance has two digits of.
+std::string mass_text(double kilograms, double tolerance);
+/// "4.285 g/cm3".
+std::string density_text(double kilograms_per_cubic_metre);
 /// "+-0.1" of a dimension in mm.
 std::string tolerance_text(double length);
 

@@ -62,6 +62,13 @@ unsigned walls_of(PlanPoint p, double length, double width) {
            (std::abs(p.y) < near ? 4u : 0u) | (std::abs(p.y - width) < near ? 8u : 0u);
 }
 
+/// Chords of a bend whose outer face they stand off by `sagitta` [m] at most.
+int chords_of(const Plate& plate, const PlatePiece& piece, double sagitta) {
+    const double outer = plate.bend_radius + plate.thickness;
+    const double step = 2 * std::acos(std::max(0.0, 1 - sagitta / outer));
+    return std::max(1, static_cast<int>(std::ceil(std::abs(piece.turn) / step)));
+}
+
 /// The stretches of a clipped line that do not run along a wall: where the curve leaves the dispenser and
 /// comes back, what clipping gives in between hugs the wall.
 std::vector<std::vector<PlanPoint>> stretches(const std::vector<PlanPoint>& line, double length,
@@ -99,6 +106,7 @@ Plate plate_on(std::vector<PlanPoint> line, const std::string& name, const Study
     plate.k_factor = build.k_factor;
     plate.z_low = -study.scene.dispenser_depth + build.clearance;
     plate.z_high = build.grip;
+    plate.z_seat = build.tabs ? -build.tab_depth : plate.z_low;
     const std::size_t last = line.size() - 1;
     for (const std::size_t e : {0u, 1u}) {
         PlanPoint& tip = e == 0 ? line[0] : line[last];
@@ -115,6 +123,13 @@ Plate plate_on(std::vector<PlanPoint> line, const std::string& name, const Study
         const double deepest =
             build.slot_depth - build.slot_clearance - 0.5 * plate.thickness * std::sin(end.slant);
         tip = tip + (std::max(0.0, deepest) / through) * outward;
+        if (!build.tabs) continue;
+        end.gap = (build.end_clearance + 0.5 * plate.thickness * std::sin(end.slant)) / through;
+        end.cut = std::max(0.0, deepest) / through + end.gap;
+        // cut square, one corner comes nearer to the wall: what lies beside the other belongs to its chamber
+        const PlanPoint left = left_of(e == 0 ? -1 * outward : outward);
+        const double leads = left.x * normal.x + left.y * normal.y;
+        end.gap_side = std::abs(leads) < kNoTurn ? -1 : leads > 0 ? 1 : 0;
     }
     plate.corners = line;
     for (std::size_t k = 1; k < last; ++k)
@@ -201,6 +216,20 @@ double Plate::middle_length() const {
     return sum;
 }
 
+double Plate::volume() const {
+    double engraved = 0;
+    for (const Mark& mark : marks) engraved += mark.area() * mark_depth;
+    return thickness * (middle_length() * height() - (ends[0].cut + ends[1].cut) * (z_seat - z_low)) -
+           engraved;
+}
+
+int Plate::faces() const {
+    int tabs = 0;
+    for (const PlateEnd& end : ends) tabs += end.cut > 0;
+    const int engraved = mark_depth > 0 ? 5 * static_cast<int>(marks.size()) : 0;
+    return 2 * static_cast<int>(pieces.size()) + 4 + 2 * tabs + engraved;
+}
+
 std::vector<Station> Plate::stations(double sagitta) const {
     std::vector<Station> all;
     const double half = 0.5 * thickness;
@@ -224,9 +253,7 @@ std::vector<Station> Plate::stations(double sagitta) const {
         const PlanPoint along = turned(direction(piece.from, piece.to), -0.5 * piece.turn);
         const double sign = piece.turn > 0 ? 1 : -1, middle = bend_radius + half;
         const PlanPoint centre = piece.from + (sign * middle) * left_of(along);
-        const double outer = bend_radius + thickness;
-        const double step = 2 * std::acos(std::max(0.0, 1 - sagitta / outer));
-        const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(piece.turn) / step)));
+        const int chords = chords_of(*this, piece, sagitta);
         for (int i = 1; i < chords; ++i) {
             const double angle = piece.turn * i / chords;
             const PlanPoint now = turned(along, angle);
@@ -235,6 +262,15 @@ std::vector<Station> Plate::stations(double sagitta) const {
         // its end is the next straight piece's start
         add(piece.to, turned(along, piece.turn), 1);
     }
+    return all;
+}
+
+std::vector<std::size_t> Plate::facet_pieces(double sagitta) const {
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        all.insert(all.end(),
+                   pieces[i].turn == 0 ? 1 : static_cast<std::size_t>(chords_of(*this, pieces[i], sagitta)),
+                   i);
     return all;
 }
 
@@ -293,6 +329,20 @@ std::array<double, 2> chamber_areas(const Study& study, const Design& design,
         }
     }
     return area;
+}
+
+std::array<double, 2> chamber_volumes(const Study& study, const Design& design,
+                                      const std::vector<Plate>& plates, const std::array<double, 2>& level) {
+    std::array<double, 2> volume = chamber_areas(study, design, plates);
+    const double depth = study.scene.dispenser_depth;
+    for (const std::size_t k : {0u, 1u}) volume[k] *= depth - level[k];
+    for (const Plate& plate : plates)
+        for (const PlateEnd& end : plate.ends)
+            for (const std::size_t k : {0u, 1u}) {
+                const double share = end.gap_side < 0 ? 0.5 : end.gap_side == static_cast<int>(k) ? 1 : 0;
+                volume[k] += share * plate.thickness * end.gap * (depth - std::max(level[k], -plate.z_seat));
+            }
+    return volume;
 }
 
 }  // namespace gradwright

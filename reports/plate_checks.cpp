@@ -159,24 +159,53 @@ std::vector<PlateCheck> plate_checks(const Study& study, const std::vector<Plate
         add("in_the_well", room >= 0, room, 0, "m",
             room >= 0 ? fmt::format("between its ends the plate stays {} off the walls", mm(room))
                       : fmt::format("a corner of the plate reaches {} into a wall", mm(-room)));
+    const char* const slots = build.tabs ? "notches" : "slots";
+    if (build.tabs) {
+        double straight = std::numeric_limits<double>::infinity();
+        for (const Plate& plate : plates)
+            for (const std::size_t e : {0u, 1u}) {
+                const PlatePiece& piece = e == 0 ? plate.pieces.front() : plate.pieces.back();
+                straight =
+                    std::min(straight, std::hypot(piece.to.x - piece.from.x, piece.to.y - piece.from.y) -
+                                           plate.ends[e].cut);
+            }
+        add("tabs", straight > 0, straight, 0, "m",
+            straight > 0 ? fmt::format("beside its tabs the plate runs straight for {}", mm(straight))
+                         : "a tab reaches into a bend: the plate must run straight where it meets the wall");
+        add("end_gap", build.end_clearance < finest_d10(study), build.end_clearance, finest_d10(study), "m",
+            fmt::format("{} between the plate's ends and the walls, the finest D10 is {}",
+                        fine(build.end_clearance), fine(finest_d10(study))));
+    }
     add("slot_angle", slant <= kSteepestSlot, slant, kSteepestSlot, "deg",
-        fmt::format(
-            "the plate meets the walls at most {:.1f} deg off their normal; beyond {:g} deg a slot is "
-            "three plates wide and leaves a feather edge",
-            slant, kSteepestSlot));
+        fmt::format("the plate meets the walls at most {:.1f} deg off their normal; beyond {:g} deg a {} is "
+                    "three plates wide and leaves a feather edge",
+                    slant, kSteepestSlot, build.tabs ? "notch" : "slot"));
     add("slot_corner", corner >= 0, corner, 0, "m",
-        corner >= 0 ? fmt::format("the slots stay {} off the dispenser's corners", mm(corner))
-                    : fmt::format("a slot runs {} over the dispenser's corner", mm(-corner)));
+        corner >= 0 ? fmt::format("the {} stay {} off the dispenser's corners", slots, mm(corner))
+                    : fmt::format("the {} run {} over a corner of the dispenser", slots, mm(-corner)));
     const double slot = build.thickness + 2 * build.slot_clearance, finest = finest_d10(study);
     add("slot_width", slot >= build.least_slot_width, slot, build.least_slot_width, "m",
-        fmt::format("slots {} wide, the workshop cuts {}", fine(slot), fine(build.least_slot_width)));
+        fmt::format("{} {} wide, the workshop cuts {}", slots, fine(slot), fine(build.least_slot_width)));
+    if (build.wall_thickness > 0)
+        add("wall_thickness", build.slot_depth < build.wall_thickness, build.slot_depth, build.wall_thickness,
+            "m",
+            fmt::format("{} {} deep in walls of {}", slots, mm(build.slot_depth), mm(build.wall_thickness)));
     add("clearance", build.clearance < finest, build.clearance, finest, "m",
         fmt::format("{} under the plate, the finest D10 is {}", fine(build.clearance), fine(finest)));
-    add("withdrawal", whole, kUndefined, kUndefined, "-",
-        whole ? fmt::format(
-                    "the plate is the same at every height, so it draws out straight upwards, {} of travel",
-                    mm(study.scene.dispenser_depth))
-              : "a plate that cannot be made cannot be drawn out");
+    // what stands in the well is the same at every height, and only tabs reach over it: nothing is undercut
+    const bool free = whole && !(room < 0);
+    const double travel = plates.empty() ? kUndefined : plates.front().height();
+    const bool high = !(build.headroom > 0) || travel <= build.headroom;
+    add("withdrawal", free && high, travel, build.headroom > 0 ? build.headroom : kUndefined, "m",
+        !free  ? "a plate that cannot be made or put in cannot be drawn out"
+        : high ? fmt::format("the plate is the same at every height{}, so it draws out straight upwards; it "
+                             "stands clear {} above the rim, {}",
+                             build.tabs ? " below its tabs" : "", mm(travel),
+                             build.headroom > 0 ? fmt::format("and {} are free", mm(build.headroom))
+                                                : "which must be free (partition_build.headroom not given)")
+               : fmt::format("the plate is {} high, only {} are free above the rim: less grip, or take the "
+                             "dispenser out of the machine to fill it",
+                             mm(travel), mm(build.headroom)));
     return checks;
 }
 

@@ -1,6 +1,7 @@
 #include "reports/plate_drawing.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "optimise/build_section.h"
 #include "optimise/plan_curve.h"
 #include "reports/partition_drawing.h"
+#include "reports/plate_views.h"
 #include "reports/provenance.h"
 #include "reports/sheet_layout.h"
 #include "reports/wording.h"
@@ -21,9 +23,7 @@ using Wall = WallEnd::Wall;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr CairoSheet::Colour kA{0, 0.447, 0.698}, kB{0.604, 0.416, 0}, kTintA{0, 0.447, 0.698, 0.13},
-    kTintB{0.902, 0.624, 0, 0.16}, kWallGrey{0.86, 0.86, 0.86}, kRed{0.75, 0, 0}, kGrey{0.35, 0.35, 0.35};
-const CairoSheet::Pen kThick{.width = 0.5}, kThin{.width = 0.25}, kFine{.width = 0.13, .colour = kGrey},
-    kCentre{.width = 0.18, .colour = kGrey, .dash = {5, 1, 0.8, 1}}, kDashed{.width = 0.25, .dash = {2, 1}};
+    kTintB{0.902, 0.624, 0, 0.16}, kRed{0.75, 0, 0}, kGrey = kSheetGrey;
 
 // Sheet [mm]: frame after ISO 5457, left column with the views, right column with tables and notes.
 constexpr double kLeft = 20, kTop = 10, kRight = 410, kBottom = 287;
@@ -40,7 +40,11 @@ class Drawing {
         sheet_.text({kLeft + 4, kTop + 7}, over_.first_line,
                     {.size = 4, .bold = true, .colour = over_.mark.empty() ? CairoSheet::Colour{} : kRed});
         plan();
-        patterns();
+        sheet_.line({kLeft, kPlanBottom}, {kColumn, kPlanBottom}, kThin);
+        const double top = kPlanBottom + 4, bottom = kBottom - 4, left = kLeft + 4, right = kColumn - 4;
+        const double split = left + (right - left) / (1.0 + static_cast<double>(over_.flats.size()));
+        draw_side_view(sheet_, study_, over_, {left, top, split, bottom});
+        draw_flat_patterns(sheet_, study_, over_, {split + 2, top, right, bottom});
         tables();
         title_block();
     }
@@ -60,8 +64,8 @@ class Drawing {
         for (const Plate& plate : over_.plates)
             for (const PlateEnd& end : plate.ends) ++ends[static_cast<std::size_t>(end.at.wall)];
         const auto rows = [&](Wall wall) { return 8.0 * ends[static_cast<std::size_t>(wall)]; };
-        const double left = 10 + rows(Wall::rear), right = 18 + rows(Wall::platform);
-        const double above = 22 + rows(Wall::side_high), below = 14 + rows(Wall::side_low);
+        const double left = 10 + rows(Wall::rear), right = 26 + rows(Wall::platform);
+        const double above = 22 + rows(Wall::side_high), below = 20 + rows(Wall::side_low);
         const double room_x = kColumn - kLeft - left - right,
                      room_y = kPlanBottom - kTop - 10 - above - below;
         scale_ = preferred_scale(std::min(room_x / (length() + 2 * slot), room_y / (width() + 2 * slot)));
@@ -91,7 +95,7 @@ class Drawing {
                 back.push_back(at(s[0]));
             }
             strip.insert(strip.end(), back.rbegin(), back.rend());
-            sheet_.fill(strip, {0.55, 0.55, 0.58});
+            sheet_.fill(strip, kPlateGrey);
             sheet_.polyline(strip, kThin, true);
             std::vector<SheetPoint> middle;
             for (const PlanPoint& p : plate.corners) middle.push_back(at(p));
@@ -117,6 +121,7 @@ class Drawing {
                             {.size = 2.5, .anchor = Anchor::middle, .colour = colour});
         }
         end_dimensions(band);
+        view_arrow(band, rows(Wall::side_low), rows(Wall::platform));
         const double y_arrow = sy(width()) - band - rows(Wall::side_high) - 8, x_middle = sx(length() / 2);
         sheet_.line({x_middle - 22, y_arrow}, {x_middle + 22, y_arrow}, {.width = 0.7});
         sheet_.tip({x_middle + 26, y_arrow}, 1, 0, 5);
@@ -124,9 +129,11 @@ class Drawing {
                     {.size = 2.8, .anchor = Anchor::middle});
         sheet_.text({kLeft + 4, kTop + 14}, fmt::format("Plan view in the dispenser, {}", scale_text(scale_)),
                     {.size = 3, .bold = true});
-        sheet_.text({sx(0) - band + 1.5, sy(width()) - band + 3.5}, "rear wall",
+        // on the walls where they are wide enough
+        const double label = band > 4.5 ? 3.5 : -1;
+        sheet_.text({sx(0) - band + 1.5, sy(width()) - band + label}, "rear wall",
                     {.size = 2.2, .colour = kGrey});
-        sheet_.text({sx(length()) + band - 1.5, sy(width()) - band + 3.5}, "platform side",
+        sheet_.text({sx(length()) + band - 1.5, sy(width()) - band + label}, "platform side",
                     {.size = 2.2, .anchor = Anchor::end, .colour = kGrey});
     }
 
@@ -223,65 +230,19 @@ class Drawing {
         sheet_.text({sx(0) + 1, sy(0) + 3.4}, "datum", {.size = 2.2});
     }
 
-    // --- flat patterns
-    void patterns() {
-        const double top = kPlanBottom + 4, bottom = kBottom - 4, left = kLeft + 4, right = kColumn - 4;
-        sheet_.line({kLeft, kPlanBottom}, {kColumn, kPlanBottom}, kThin);
-        const double count = static_cast<double>(over_.flats.size());
-        double longest = 0, highest = 0;
-        for (const FlatPattern& flat : over_.flats) {
-            longest = std::max(longest, flat.length * 1e3);
-            highest = std::max(highest, flat.height * 1e3);
-        }
-        const double room_x = (right - left) / count - 34, room_y = bottom - top - 30;
-        const double scale = preferred_scale(std::min(room_x / longest, room_y / highest));
-        sheet_.text({left, top + 2},
-                    fmt::format("{} seen from side B, {}",
-                                study_.build.printed ? "Wall unrolled," : "Flat pattern", scale_text(scale)),
-                    {.size = 3, .bold = true});
-        for (std::size_t i = 0; i < over_.flats.size(); ++i) {
-            const FlatPattern& flat = over_.flats[i];
-            const double l = flat.length * 1e3 * scale, h = flat.height * 1e3 * scale,
-                         r = flat.rim * 1e3 * scale;
-            const double x = left + (right - left) / count * static_cast<double>(i) + 18 + (room_x - l) / 2,
-                         y = bottom - 12 - (room_y - h) / 2;
-            sheet_.polyline({{x, y}, {x + l, y}, {x + l, y - h}, {x, y - h}}, kThick, true);
-            sheet_.line({x - 3, y - r}, {x + l + 3, y - r}, kCentre);
-            sheet_.text({x + l + 4, y - r + 0.8}, "rim", {.size = 2.2});
-            std::vector<double> wanted;
-            for (const FlatBend& bend : flat.bends) wanted.push_back(x + bend.at * 1e3 * scale);
-            const std::vector<double> placed = spread_apart(wanted, 3.4);
-            for (std::size_t b = 0; b < wanted.size(); ++b) {
-                sheet_.line({wanted[b], y + 1}, {wanted[b], y - h - 1}, kDashed);
-                sheet_.polyline({{wanted[b], y - h - 1}, {placed[b], y - h - 3}}, kFine);
-                sheet_.text({placed[b] + 0.9, y - h - 3.6}, fmt::format("{:.3f}", flat.bends[b].at * 1e3),
-                            {.size = 2.4, .turn_deg = 90});
-            }
-            const double etch = std::clamp(0.16 * (h - r), 1.0, 3.0);
-            const double middle = x + l / 2;
-            if (h - r > 4.5 * etch && sheet_.text_width(over_.id + " " + flat.name, {.size = etch}) < l) {
-                sheet_.text({middle, y - h + 1.6 * etch}, over_.id + " " + flat.name,
-                            {.size = etch, .anchor = Anchor::middle});
-                sheet_.text({middle, y - h + 2.9 * etch}, "SIDE B", {.size = etch, .anchor = Anchor::middle});
-            } else {
-                sheet_.text({x + l + 4, y - h + 3}, over_.id + " " + flat.name, {.size = 2.2});
-                sheet_.text({x + l + 4, y - h + 6}, "SIDE B", {.size = 2.2});
-            }
-            if (flat.arrow != 0) {
-                const double ya = y - r - 0.22 * (h - r), half = std::min(0.4 * l, 18.0);
-                sheet_.line({middle - flat.arrow * half, ya}, {middle + flat.arrow * (half - 1.5), ya},
-                            kThin);
-                sheet_.tip({middle + flat.arrow * half, ya}, flat.arrow, 0, 2.6);
-            }
-            for (const double u : {x, x + l}) sheet_.line({u, y + 0.8}, {u, y + 8.5}, kFine);
-            sheet_.dimension({x, y + 7}, {x + l, y + 7},
-                             fmt::format("{:.3f} {}", flat.length * 1e3, tolerance_text(flat.length)));
-            for (const double v : {y, y - h}) sheet_.line({x - 0.8, v}, {x - 11.5, v}, kFine);
-            sheet_.dimension({x - 10, y}, {x - 10, y - h},
-                             fmt::format("{:.3f} {}", flat.height * 1e3, tolerance_text(flat.height)));
-            sheet_.text({x + l + 4, y - 0.5 * h - 2}, flat.name, {.size = 4, .bold = true});
-            sheet_.text({x + l + 4, y - 0.5 * h + 2}, fmt::format("t = {:g}", study_.build.thickness * 1e3),
-                        {.size = 2.4});
+    /// Which way the side view looks.
+    void view_arrow(double band, double rows_below, double rows_right) {
+        const CairoSheet::Look letter{.size = 4, .anchor = Anchor::middle, .bold = true};
+        if (seen_along_y(over_)) {
+            const double x = sx(0.75 * length()), y = sy(0) + band + rows_below + 9;
+            sheet_.line({x, y + 8}, {x, y + 2}, {.width = 0.5});
+            sheet_.tip({x, y}, 0, -1, 3.5);
+            sheet_.text({x + 3.5, y + 7}, "X", letter);
+        } else {
+            const double x = sx(length()) + band + rows_right + 9, y = sy(0.75 * width());
+            sheet_.line({x + 8, y}, {x + 2, y}, {.width = 0.5});
+            sheet_.tip({x, y}, -1, 0, 3.5);
+            sheet_.text({x + 6, y - 1.5}, "X", letter);
         }
     }
 
@@ -384,17 +345,28 @@ class Drawing {
             "Temporary plate: the dispenser is filled with it in place, then it is drawn out upwards. "
             "Position by the end "
             "offsets, not by angle; angles in brackets are for information.");
-        note(
-            fmt::format("Slots in the dispenser's walls, square to the rim, over its full depth: width "
-                        "{:.4g} +{:.4g}/0, depth {:.3f} "
-                        "+0.1/0.",
-                        1e3 * (build.thickness + 2 * build.slot_clearance), 1e3 * build.slot_clearance,
-                        1e3 * build.slot_depth));
-        note(
-            fmt::format("Lower edge straight and square to the plate: gap to the dispenser floor {:.4g} um, "
-                        "nowhere {:.4g} um or "
-                        "more (finest D10).",
-                        build.clearance * 1e6, finest * 1e6));
+        const double slot = 1e3 * (build.thickness + 2 * build.slot_clearance);
+        if (build.tabs) {
+            note(fmt::format(
+                "Notches in the rim of the dispenser's walls for the tabs: {:.3f} +0.1/0 deep below "
+                "the rim, {:.3f} +0.1/0 into the wall, width {:.4g} +{:.4g}/0; bottoms level.",
+                1e3 * build.tab_depth, 1e3 * build.slot_depth, slot, 1e3 * build.slot_clearance));
+            note(fmt::format(
+                "The plate hangs by its tabs. Its ends below them are fitted to this dispenser: gap "
+                "to the walls {:.4g} um, nowhere {:.4g} um or more (finest D10). Lower edge straight "
+                "within {:.4g} um; the floor is brought up to it.",
+                build.end_clearance * 1e6, finest * 1e6, build.clearance * 1e6));
+        } else {
+            note(
+                fmt::format("Slots in the dispenser's walls, square to the rim, over its full depth: width "
+                            "{:.4g} +{:.4g}/0, depth {:.3f} +0.1/0.",
+                            slot, 1e3 * build.slot_clearance, 1e3 * build.slot_depth));
+            note(fmt::format(
+                "The plate stands on the dispenser floor, so its height's tolerance goes into the "
+                "grip. Lower edge straight and square to the plate: gap to the floor {:.4g} um, "
+                "nowhere {:.4g} um or more (finest D10).",
+                build.clearance * 1e6, finest * 1e6));
+        }
         note(fmt::format("Deburr all edges, burr at most {:.4g} um, edges not rounded; free of grease.",
                          finest * 1e6));
         if (over_.make == "bent sheet")
@@ -404,13 +376,24 @@ class Drawing {
                             std::abs(build.k_factor - din_k_factor(build.bend_radius, build.thickness)) < 1e-9
                                 ? " (DIN 6935)"
                                 : ""));
-        note(
-            fmt::format("Engrave above the rim, on side B: {} and the plate's letter, SIDE B, arrow in the "
-                        "spreading direction; on "
-                        "side A: SIDE A.",
-                        over_.id));
+        if (build.printed)
+            note(
+                "Printed standing, shape from partition.step or partition.stl; no support on the faces. "
+                "Slide it "
+                "through its slots by hand before use: it must fall by its own weight.");
+        for (std::size_t i = 0; i < over_.marks.size(); ++i) {
+            const auto& sides = over_.marks[i];
+            note(fmt::format(
+                "{} {} above the rim, {}letters {:.2g} mm high; on side B: {}; on side A: {}. As in "
+                "partition.step; side B also in flat_pattern.dxf.",
+                build.engraving > 0 ? "Engrave" : "Mark the surface of", over_.plates[i].name,
+                build.engraving > 0 ? fmt::format("{:.3g} mm deep, ", build.engraving * 1e3) : "",
+                1e3 * std::min(sides[0].letter, sides[1].letter), fmt::join(sides[1].lines, " / "),
+                fmt::join(sides[0].lines, " / ")));
+        }
         note(over_.slot.text);
-        for (const std::string& warning : over_.warnings) note(warning);
+        // what concerns powder stands on the fill sheet
+        for (const std::string& warning : plate_warnings(study_, over_.plates)) note(warning);
         if (unwritten_ > 0)
             sheet_.text({right, kTitleTop - 1.5}, fmt::format("{} more in spec.json", unwritten_),
                         {.size = 2.2, .anchor = Anchor::end});
@@ -442,7 +425,8 @@ class Drawing {
         field(left + third, top, third, "thickness, make",
               fmt::format("{:g}, {}", build.thickness * 1e3, over_.make));
         field(left + 2 * third, top, third, "general tolerances", "ISO 2768-1 m");
-        field(left, top + 8, third, "dimensions, scales", fmt::format("mm; {} (A3)", scale_text(scale_)));
+        field(left, top + 8, third, "dimensions, scales",
+              fmt::format("mm; {} or as stated (A3)", scale_text(scale_)));
         field(left + third, top + 8, third, "machine", study_.machine_name);
         field(left + 2 * third, top + 8, third, "dispenser length x width x depth",
               fmt::format("{:g} x {:g} x {:g}", length(), width(), study_.scene.dispenser_depth * 1e3));
@@ -460,8 +444,11 @@ class Drawing {
         divide(49, kBottom - top, {third, 2 * third, 2 * third + 30});
         field(left, top + 49.5, third, "made by",
               fmt::format("gradwright {}", provenance_json()["version"].get<std::string>()));
-        // first-angle projection: a truncated cone from the side and from its small end
-        const double cx = left + third + 14, cy = top + 53.5;
+        sheet_.text({left + third + 1.2, top + 52.1}, "first-angle projection",
+                    {.size = 1.9, .colour = kGrey});
+        sheet_.text({left + third + 1.2, top + 56}, "X: by arrow", {.size = 1.9, .colour = kGrey});
+        // a truncated cone from the side and from its small end
+        const double cx = left + third + 28, cy = top + 53.5;
         sheet_.polyline({{cx, cy - 1.5}, {cx + 7, cy - 2.6}, {cx + 7, cy + 2.6}, {cx, cy + 1.5}}, kThin,
                         true);
         for (const double r : {1.5, 2.6}) {

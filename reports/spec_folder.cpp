@@ -59,8 +59,7 @@ SpecFiles write_spec(const Study& study, const FinishedDesign& finished, const H
     try_step(study, over, schema, in_folder("partition.step"), written);
     if (written.step) written.names.push_back("partition.step");
     put("partition.stl", stl_text(over.plates, fmt::format("{} {}", over.id, over.first_line)));
-    DxfNotes notes{
-        fmt::format("{}. {}, mm, seen from side B", over.first_line, over.id), over.id, {over.first_line}};
+    DxfNotes notes{fmt::format("{}. {}, mm, seen from side B", over.first_line, over.id), {over.first_line}};
     notes.lines.push_back(
         fmt::format("{}, t = {:g} mm, {}", study.build.material, study.build.thickness * 1e3, over.make));
     if (over.make == "bent sheet")

@@ -1,11 +1,12 @@
 #include "reports/spec_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "reports/json_support.h"
 #include "reports/provenance.h"
-#include "reports/stl_file.h"
+#include "reports/step_file.h"
 
 namespace gradwright {
 namespace {
@@ -18,7 +19,7 @@ json optional_number(const std::optional<double>& value) {
     return value ? number(*value) : json(nullptr);
 }
 
-json plate_json(const Plate& plate, const FlatPattern& flat) {
+json plate_json(const Plate& plate, const FlatPattern& flat, const std::array<MarkText, 2>& marks) {
     const auto box = plate.box(1e-9);
     json ends = json::array(), bends = json::array();
     for (const PlateEnd& end : plate.ends)
@@ -26,6 +27,7 @@ json plate_json(const Plate& plate, const FlatPattern& flat) {
                         {"offset_m", number(end.at.offset)},
                         {"tolerance_m", number(linear_tolerance(end.at.offset))},
                         {"slot_along_wall_m", number(end.slot_along)},
+                        {"cut_below_tab_m", number(end.cut)},
                         {"off_normal_deg", number(end.slant / kDegree)}});
     for (const FlatBend& bend : flat.bends)
         bends.push_back({{"at_m", number(bend.at)},
@@ -45,6 +47,12 @@ json plate_json(const Plate& plate, const FlatPattern& flat) {
          {{number(box[0].x), number(box[0].y), number(plate.z_low)},
           {number(box[1].x), number(box[1].y), number(plate.z_high)}}},
         {"ends", ends},
+        {"engraved",
+         {{"depth_m", number(plate.mark_depth)},
+          {"letter_height_m", {{"A", number(marks[0].letter)}, {"B", number(marks[1].letter)}}},
+          {"side_a", marks[0].lines},
+          {"side_b", marks[1].lines},
+          {"marks", plate.marks.size()}}},
         {"flat", {{"length_m", number(flat.length)}, {"height_m", number(flat.height)}, {"bends", bends}}}};
 }
 
@@ -68,7 +76,7 @@ json spec_json(const Study& study, const FinishedDesign& finished, const HandOve
                const std::vector<std::string>& files) {
     json plates = json::array(), checks = json::array(), acceptance = json::array();
     for (std::size_t i = 0; i < over.plates.size(); ++i)
-        plates.push_back(plate_json(over.plates[i], over.flats[i]));
+        plates.push_back(plate_json(over.plates[i], over.flats[i], over.marks[i]));
     for (const PlateCheck& check : over.checks)
         checks.push_back({{"id", check.id},
                           {"passed", check.passed},
@@ -81,6 +89,13 @@ json spec_json(const Study& study, const FinishedDesign& finished, const HandOve
     const PartitionBuild& build = study.build;
     const FillPlan& fill = over.fill;
     const json provenance = provenance_json();
+    const bool solid = std::find(files.begin(), files.end(), "partition.step") != files.end();
+    json missing = json::array();
+    if (!solid)
+        missing.push_back({{"file", "partition.step"},
+                           {"reason", step_available() ? "the plate is no valid solid"
+                                                       : "built without OpenCASCADE (GRADWRIGHT_STEP=OFF): "
+                                                         "partition.stl has the shape, without exact arcs"}});
     return {{"format", "gradwright-spec-1"},
             {"first_line", over.first_line},
             {"verified", over.mark.empty()},
@@ -106,7 +121,10 @@ json spec_json(const Study& study, const FinishedDesign& finished, const HandOve
               {"bend_radius_m", number(build.bend_radius)},
               {"k_factor", number(build.k_factor)},
               {"clearance_m", number(build.clearance)},
+              {"hold", build.tabs ? "tabs" : "slots"},
               {"slot_depth_m", number(build.slot_depth)},
+              {"tab_depth_m", build.tabs ? number(build.tab_depth) : json(nullptr)},
+              {"end_clearance_m", build.tabs ? number(build.end_clearance) : json(nullptr)},
               {"slot_width_m", number(build.thickness + 2 * build.slot_clearance)},
               {"general_tolerances", "ISO 2768-1 m"}}},
             {"plates", plates},
@@ -136,7 +154,8 @@ json spec_json(const Study& study, const FinishedDesign& finished, const HandOve
              {{"program", provenance["program"]},
               {"version", provenance["version"]},
               {"source", provenance["source"]}}},
-            {"files", files}};
+            {"files", files},
+            {"missing", missing}};
 }
 
 }  // namespace gradwright

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "optimise/chamber_fill.h"
+#include "reports/plate_checks.h"
 
 namespace gradwright {
 namespace {
@@ -282,6 +283,15 @@ Wording wording(const Study& study, const StudyResult& result) {
             "same partition lays a {} of {} from the target, not {}",
             name, gi_text(norm_of(result.misfit.norm, residual, field ? result.field_weight : result.weight)),
             gi_text(result.misfit.value)));
+    }
+    // the spreads of most studies know a partition of no thickness; the plate that is built leaves a slot
+    if (const auto plates = plates_of(study, result.design); !plates.empty()) {
+        const SlotEffect slot = slot_effect(study, result.design, plates);
+        if (!slot.simulated)
+            words.warnings.push_back(
+                fmt::format("the slot that the drawn plate leaves is not simulated: {} mm of thickness take "
+                            "{:.1f} % of the dispenser and leave a trough about {} mm deep",
+                            millimetres(study.build.thickness), 100 * slot.share, millimetres(slot.depth)));
     }
     std::vector<std::string> unique;
     for (const std::string& warning : words.warnings)

@@ -130,7 +130,7 @@ TEST_F(SpecVerb, its_inputs_are_shown_by_check) {
         ++count;
         EXPECT_FALSE(input["note"].get<std::string>().empty()) << input;
     }
-    EXPECT_EQ(count, 17u);
+    EXPECT_EQ(count, 21u);
 }
 
 }  // namespace

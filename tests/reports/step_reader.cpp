@@ -1,8 +1,10 @@
 #include "tests/reports/step_reader.h"
 
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -42,6 +44,26 @@ std::vector<ReadSolid> read_step(const std::string& path) {
         solids[next++].description = product->Description()->ToCString();
     }
     return solids;
+}
+
+std::vector<WellPart> read_well(const std::string& path, const std::array<double, 3>& low,
+                                const std::array<double, 3>& high) {
+    std::vector<WellPart> parts;
+    STEPControl_Reader reader;
+    if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) return parts;
+    reader.TransferRoots();
+    TopoDS_Shape rest = BRepPrimAPI_MakeBox(gp_Pnt(low[0] * 1e3, low[1] * 1e3, low[2] * 1e3),
+                                            gp_Pnt(high[0] * 1e3, high[1] * 1e3, high[2] * 1e3))
+                            .Shape();
+    for (TopExp_Explorer at(reader.OneShape(), TopAbs_SOLID); at.More(); at.Next())
+        rest = BRepAlgoAPI_Cut(rest, at.Current()).Shape();
+    for (TopExp_Explorer at(rest, TopAbs_SOLID); at.More(); at.Next()) {
+        GProp_GProps properties;
+        BRepGProp::VolumeProperties(at.Current(), properties);
+        const gp_Pnt centre = properties.CentreOfMass();
+        parts.push_back({properties.Mass() * 1e-9, {centre.X() * 1e-3, centre.Y() * 1e-3}});
+    }
+    return parts;
 }
 
 }  // namespace gradwright

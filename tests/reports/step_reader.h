@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "dem/partition.h"
+
 namespace gradwright {
 
 struct ReadSolid {
@@ -14,5 +16,13 @@ struct ReadSolid {
     std::array<double, 6> box{};  ///< least x y z, largest x y z [mm]
 };
 std::vector<ReadSolid> read_step(const std::string& path);
+
+/// A part of a box that the solids of a STEP file leave, SI.
+struct WellPart {
+    double volume = 0;
+    PlanPoint centre;
+};
+std::vector<WellPart> read_well(const std::string& path, const std::array<double, 3>& low,
+                                const std::array<double, 3>& high);
 
 }  // namespace gradwright
