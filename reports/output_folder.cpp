@@ -38,8 +38,11 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
                                       "partition.json", "partition.svg", "study.toml"};
     if (!map.gi.empty()) files.push_back("gi_map.vtkhdf");
     if (result.extrapolated) files.push_back("heap_order.svg");
-    for (std::size_t i = 0; i < result.snapshots.size(); ++i)
-        files.push_back(fmt::format("particles_{:04}.vtkhdf", i));
+    std::vector<Snapshot> instants;
+    for (const std::size_t k : shown_instants(result.snapshots.size())) {
+        files.push_back(fmt::format("particles_{:04}.vtkhdf", instants.size()));
+        instants.push_back(result.snapshots[k]);
+    }
     if (!result.snapshots.empty()) files.push_back("particles.vtkhdf.series");
 
     write_file(in_folder("study.toml"), study.text);
@@ -51,7 +54,7 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
     if (!map.gi.empty())
         write_map_file(map, scene_of(study, result.design, false, result.seed).gap,
                        in_folder("gi_map.vtkhdf"));
-    write_particle_series(result.snapshots, folder);
+    write_particle_series(instants, folder);
     const nlohmann::json data = report_data(study, result, files);
     write_file(in_folder("report_data.json"), text_of(data, -1));
     write_report(data, in_folder("report.html"));

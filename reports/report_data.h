@@ -15,4 +15,8 @@ namespace gradwright {
 nlohmann::json report_data(const Study& study, const StudyResult& result,
                            const std::vector<std::string>& files = {});
 
+/// Which of `count` instants are drawn and written for ParaView: the first, the last and evenly between them,
+/// at most `most`; a film keeps many more.
+std::vector<std::size_t> shown_instants(std::size_t count, std::size_t most = 5);
+
 }  // namespace gradwright

@@ -51,6 +51,7 @@
       const width = Math.floor(item.box.clientWidth);
       if (!width || width === item.width) continue;
       item.width = width;
+      if (item.keep) { item.keep(width); continue; }
       const made = [item.draw(width)].flat().filter(Boolean);
       item.box.replaceChildren(...made);
       for (const svg of item.box.querySelectorAll("svg"))
@@ -101,7 +102,7 @@
       h("div", { class: "card" }, h("h3", {}, "How sure"), h("p", { style: "margin:0 0 .5rem" }, words.sure),
         h("p", { class: "note", style: "margin:0" }, `Search ended: ${result.termination}${result.message ? ". " + result.message : ""}`)),
       h("div", { class: "card" }, h("h3", {}, "Compared on the same target"), comparison()))));
-  page.append(h("nav", { "aria-label": "sections" }, [["figures", "Gradation"], ["grains", "Bed and layer"], ["search", "Search"], ["inputs", "Inputs"], ["provenance", "Provenance"]].map(([id, name]) => h("a", { href: "#" + id }, name))));
+  page.append(h("nav", { "aria-label": "sections" }, [["figures", "Gradation"], pictures.length ? ["grains", "Bed and layer"] : null, data.sensitivity ? ["sensitivity", "Sensitivity"] : null, ["search", "Search"], ["inputs", "Inputs"], ["provenance", "Provenance"]].filter(Boolean).map(([id, name]) => h("a", { href: "#" + id }, name))));
 
   function comparison() {
     const row = (name, e) => e && e.status !== "not_run" ? [name, gi(e.misfit.value), gi(e.x_drift.value)] : null;
@@ -338,7 +339,7 @@
 
   // ---- grains --------------------------------------------------------------------------------------------------------
   if (pictures.length) {
-    const grains = pictures.map(Grains.unpack), L = plan.dispenser_length_m, W = plan.width_m, x0 = L + plan.land_m, P = plan.platform_length_m;
+    const last = pictures.length > 1 ? pictures.at(-1) : null, grains = [pictures[0], last].filter(Boolean).map(Grains.unpack), L = plan.dispenser_length_m, W = plan.width_m, x0 = L + plan.land_m, P = plan.platform_length_m;
     const reach = Math.min(4e-3, Math.max(L, P)); // longer pictures would have grains below a pixel
     const lands = [[-1, 0, 0], [L, x0, 0], [x0, x0 + P, -plan.gap_m], [x0 + P, 1e3, 0]];
     const r_max = pictures[0].radius_max, bed_floor = -plan.bed_depth_m - r_max;
@@ -347,12 +348,18 @@
     const depth = Math.max(plan.bed_depth_m, plan.gap_m) + 2 * r_max;
     const views = [
       ["w6", "Before: the dispenser from above", `Levelled bed, raised by the dose of ${mm(plan.dose_height_m)} mm; ${pictures[0].grains.toLocaleString("en-GB")} mobile grains in the run.`, (w) => Grains.plan(grains[0], w, [...before, 0, W], "#3a3f45", "the bed before the spread from above")],
-      pictures[1] ? ["w6", "After: the layer from above", "Grains on the platform when the blade has passed; grey: the substrate below.", (w) => Grains.plan(grains[1], w, [...after, 0, W], "#aab2bb", "the layer after the spread from above")] : null,
+      last ? ["w6", "After: the layer from above", "Grains on the platform when the blade has passed; grey: the substrate below.", (w) => Grains.plan(grains[1], w, [...after, 0, W], "#aab2bb", "the layer after the spread from above")] : null,
       ["w12", "Before: cut along the middle of the dispenser", "Cut at half the width, to scale, circles are true sections of grains. Dashed: z = 0, the blade's edge.", (w) => Grains.slice(grains[0], w, [...before, -depth, rise], W / 2, [[-1, 1e3, bed_floor]], "the bed before the spread, cut")],
-      pictures[1] ? ["w12", "After: cut along the middle of the platform", `Same scale. Grey: the substrate's mean plane, ${mm(plan.gap_m)} mm below the blade's edge.`, (w) => Grains.slice(grains[1], w, [...after, -depth, rise / 2], W / 2, lands, "the layer after the spread, cut")] : null];
+      last ? ["w12", "After: cut along the middle of the platform", `Same scale. Grey: the substrate's mean plane, ${mm(plan.gap_m)} mm below the blade's edge.`, (w) => Grains.slice(grains[1], w, [...after, -depth, rise / 2], W / 2, lands, "the layer after the spread, cut")] : null];
     section("grains", "Bed and layer",
       h("p", { class: "note", style: "margin:0" }, h("span", { class: "key A" }), `A, ${data.materials.A} `, h("span", { class: "key B", style: "margin-left:1em" }), `B, ${data.materials.B}`),
-      h("div", { class: "grid" }, views.filter(Boolean).map((v) => figure(...v))));
+      h("div", { class: "grid" }, spread_figure(), views.filter(Boolean).map((v) => figure(...v))));
+  }
+  // Its nodes stay, and it draws itself anew: only the width is handed on.
+  function spread_figure() {
+    const view = SpreadScene.build(pictures, plan, h), box = h("div", { class: "plot scene" }, view.nodes);
+    drawn.push({ box, title: "The spread in 3-D", width: 0, keep: view.redraw });
+    return h("figure", { class: "w12" }, h("h3", {}, "The spread in 3-D: before, during, after"), box, h("figcaption", {}, `Dispenser, land and platform to scale, from the first confirming spread. Grains: A blue, B orange, places to ${(1e6 * Math.max(...pictures.flatMap((p) => p.extent)) / 65535).toFixed(2)} µm. Before: the bed raised by the dose, and where the partition stood while it was filled (dark; drawn higher than the bed). During: the blade is see-through. ${plan.periodic ? "The two long sides are joined: what leaves one comes in at the other. " : ""}${view.note}`));
   }
 
   // ---- sensitivity: there when `gradwright sensitivity OUT` has run ---------------------------------------------------
@@ -439,7 +446,7 @@
     h("div", { class: "card w6" }, h("h3", {}, "Make it again"), h("pre", { tabindex: "0" }, data.command), h("p", { class: "note" }, "The same study, seed and program give the same numbers on any number of threads."),
       result.files.length ? h("div", {}, h("h3", {}, "Files beside this page"), h("p", { class: "note", style: "margin:0" }, result.files.join("  ·  "))) : null),
     h("div", { class: "card w12" }, h("h3", {}, "Study file, as written"), h("pre", { tabindex: "0" }, data.study_text))));
-  document.body.append(h("footer", {}, "Figures drawn with Observable Plot 0.6 and D3 7 (ISC licence), contained in this page. Colours after Okabe and Ito. Lengths in mm on this page, in m in the JSON and HDF5 files."));
+  document.body.append(h("footer", {}, "Figures drawn with Observable Plot 0.6 and D3 7 (ISC licence), the grains in 3-D with three.js (MIT licence), contained in this page. Colours after Okabe and Ito. Lengths in mm on this page, in m in the JSON and HDF5 files."));
 
   redraw();
   let waiting = 0;

@@ -109,6 +109,34 @@ TEST(GrainPicture, a_big_bed_keeps_its_surface_and_its_cut) {
     EXPECT_EQ(few["data"].get<std::string>().size(), (few["shown"].get<std::size_t>() * 8 + 2) / 3 * 4);
 }
 
+TEST(GrainPicture, no_bed_takes_more_than_its_share_of_the_page) {
+    const Study study = fixture::study();
+    const StudyResult result = fixture::result(study);
+    const auto few = grain_picture(result.snapshots[0], study.scene, 1000, 500);
+    EXPECT_EQ(few["shown"], 500);
+    EXPECT_EQ(few["grains"], result.snapshots[0].x.size());
+    // evenly over the heights: the lowest of the surface stays, and something near the top
+    const auto all = grain_picture(result.snapshots[0], study.scene, 1000);
+    EXPECT_EQ(few["origin"][2], all["origin"][2]);
+    EXPECT_GT(few["extent"][2].get<double>(), 0.9 * all["extent"][2].get<double>());
+}
+
+TEST(Report, shows_the_first_and_the_last_instant_and_some_between) {
+    EXPECT_THAT(shown_instants(0), testing::IsEmpty());
+    EXPECT_THAT(shown_instants(1), testing::ElementsAre(0));
+    EXPECT_THAT(shown_instants(2), testing::ElementsAre(0, 1));
+    EXPECT_THAT(shown_instants(5), testing::ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(shown_instants(61), testing::ElementsAre(0, 15, 30, 45, 60));
+}
+
+TEST(Report, carries_the_3_d_library_only_where_there_are_grains) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    EXPECT_THAT(report_html(report_data(study, result)), HasSubstr("var THREE="));
+    result.snapshots.clear();
+    EXPECT_THAT(report_html(report_data(study, result)), Not(HasSubstr("var THREE=")));
+}
+
 TEST(Wording, verdict_names_the_margin) {
     const Study study = fixture::study();
     StudyResult result = fixture::result(study);
