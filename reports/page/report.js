@@ -448,6 +448,11 @@
     h("div", { class: "card w12" }, h("h3", {}, "Study file, as written"), h("pre", { tabindex: "0" }, data.study_text))));
   document.body.append(h("footer", {}, "Figures drawn with Observable Plot 0.6 and D3 7 (ISC licence), the grains in 3-D with three.js (MIT licence), contained in this page. Colours after Okabe and Ito. Lengths in mm on this page, in m in the JSON and HDF5 files."));
 
+  // Folded numbers would be lost on paper.
+  const unfolded = [];
+  window.addEventListener("beforeprint", () => { for (const d of document.querySelectorAll("details:not([open])")) { d.open = true; unfolded.push(d); } });
+  window.addEventListener("afterprint", () => { for (const d of unfolded.splice(0)) d.open = false; });
+
   redraw();
   let waiting = 0;
   new ResizeObserver(() => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(redraw); }).observe(page);
