@@ -43,7 +43,7 @@ COLLECT = r"""(() => {
         })),
         lines: group("line").flatMap((g) => [...g.children].map((p) => [...p.getAttribute("d").matchAll(/(-?[\d.]+(?:e-?\d+)?),(-?[\d.]+(?:e-?\d+)?)/g)].map((m) => [back(x, Number(m[1])), back(y, Number(m[2]))]))),
         rects: group("rect").map((g) => [...g.children].map(rect)),
-        bars: group("bar").map((g) => [...g.children].map(rect)),
+        bars: group("bar").map((g) => [...g.querySelectorAll("rect")].map(rect)),
         rules: group("rule").map((g) => [...g.children].map((l) => [back(x, number(l, "x1")), back(y, number(l, "y1")), back(y, number(l, "y2")), back(x, number(l, "x2"))])),
         texts: group("text").flatMap((g) => [...g.children].map((t) => t.textContent)),
       };
@@ -282,8 +282,9 @@ def check_grains(folder, pictures):
     import h5py
 
     count = 0
+    instants = json.loads((folder / "particles.vtkhdf.series").read_text(encoding="utf-8"))["files"]
     for k, picture in enumerate(pictures):
-        with h5py.File(folder / f"particles_{k:04}.vtkhdf") as file:
+        with h5py.File(folder / next(i["name"] for i in instants if i["time"] == picture["time"])) as file:
             points, radius, is_a = file["VTKHDF/Points"][()], file["VTKHDF/PointData/radius"][()], file["VTKHDF/PointData/is_a"][()]
         assert picture["grains"] == len(points), f"instant {k}: {picture['grains']} grains, {len(points)} in the file"
         order = sorted(range(len(points)), key=lambda i: points[i][2])
