@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "reports/film.h"
 #include "reports/heap_order_figure.h"
 #include "reports/html_report.h"
 #include "reports/map_file.h"
@@ -25,7 +26,7 @@ std::string text_of(const nlohmann::json& object, int indent) {
 }  // namespace
 
 std::vector<std::string> write_outputs(const Study& study, const StudyResult& result,
-                                       const std::string& folder) {
+                                       const std::string& folder, Film film) {
     make_folder(folder);
     const auto in_folder = [&](const std::string& name) { return folder + "/" + name; };
     std::vector<const GradationMap*> maps;
@@ -45,6 +46,9 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
     }
     if (!result.snapshots.empty()) files.push_back("particles.vtkhdf.series");
 
+    const bool filmed = film == Film::drawn && result.snapshots.size() > 1;
+    if (filmed) files.push_back("film.webp");
+
     write_file(in_folder("study.toml"), study.text);
     write_file(in_folder("result.json"), text_of(to_json(study, result, files), 2));
     write_file(in_folder("partition.json"), text_of(partition_json(study, result), 2));
@@ -55,6 +59,9 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
         write_map_file(map, scene_of(study, result.design, false, result.seed).gap,
                        in_folder("gi_map.vtkhdf"));
     write_particle_series(instants, folder);
+    if (filmed)
+        write_file(in_folder("film.webp"), film_webp(scene_of(study, result.design, false, result.seed),
+                                                     result.design.partition, result.snapshots));
     const nlohmann::json data = report_data(study, result, files);
     write_file(in_folder("report_data.json"), text_of(data, -1));
     write_report(data, in_folder("report.html"));

@@ -359,7 +359,7 @@
   function spread_figure() {
     const view = SpreadScene.build(pictures, plan, h), box = h("div", { class: "plot scene" }, view.nodes);
     drawn.push({ box, title: "The spread in 3-D", width: 0, keep: view.redraw });
-    return h("figure", { class: "w12" }, h("h3", {}, "The spread in 3-D: before, during, after"), box, h("figcaption", {}, `Dispenser, land and platform to scale, from the first confirming spread. Grains: A blue, B orange, places to ${(1e6 * Math.max(...pictures.flatMap((p) => p.extent)) / 65535).toFixed(2)} µm. Before: the bed raised by the dose, and where the partition stood while it was filled (dark; drawn higher than the bed). During: the blade is see-through. ${plan.periodic ? "The two long sides are joined: what leaves one comes in at the other. " : ""}${view.note}`));
+    return h("figure", { class: "w12" }, h("h3", {}, "The spread in 3-D: before, during, after"), box, h("figcaption", {}, `Dispenser, land and platform to scale, from the first confirming spread. Grains: A blue, B orange, places to ${(1e6 * Math.max(...pictures.flatMap((p) => p.extent)) / 65535).toFixed(2)} µm. Before: the bed raised by the dose, and where the partition stood while it was filled (dark; drawn higher than the bed). During: the blade is see-through. ${plan.periodic ? "The two long sides are joined: what leaves one comes in at the other. " : ""}${view.note}`), result.files.includes("film.webp") ? h("p", { class: "note" }, "The same spread as an animated picture: ", h("a", { href: "film.webp" }, "film.webp"), ".") : null);
   }
 
   // ---- sensitivity: there when `gradwright sensitivity OUT` has run ---------------------------------------------------
