@@ -96,6 +96,20 @@ def lammps_table():
     return "\n".join(rows)
 
 
+def keep_levels():
+    """What the two tables say of each set of reductions, for the reports of designs that use it: linked into the program."""
+    of_setting = ("names", "softening", "rayleigh_fraction", "coarse_factor", "sleep")
+    of_level = ("name", "meaning", "status", "reason", "grains", "steps", "seconds", "speed_up", "gi_rmse", "noise_floor", "packing_error", "max_overlap_ratio", "within_noise", "overlap_rule_kept")
+    tables = []
+    for name, words in (("tradeoff", TRADEOFF), ("reduced", REDUCED)):
+        a = answer(name, words)
+        levels = [{**{k: l[k] for k in of_level}, "reductions": {k: l["reductions"][k] for k in of_setting}} for l in a["levels"] if l["grains"] is not None]
+        tables.append({"command": shown(words).strip("`"), "study": a["study"] + " at half its length", "seeds": a["seeds"], "noise_allowed": a["noise_allowed"], "isa": a["provenance"]["host"]["isa"], "levels": levels})
+    with open(os.path.join(ROOT, "docs", "data", "speed-against-error.json"), "w") as file:
+        json.dump(tables, file, indent=1, sort_keys=True)
+        file.write("\n")
+
+
 TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
 
 
@@ -112,6 +126,8 @@ def main():
             sys.exit(f"{PAGE} has no place for the table '{name}'")
         with open(PAGE, "w") as file:
             file.write(mark.sub(lambda m: m.group(1) + table + "\n" + m.group(2), page))
+    if {"tradeoff", "reduced"} & set(wanted):
+        keep_levels()
 
 
 main()

@@ -7,6 +7,7 @@
 #include "reports/json_support.h"
 #include "reports/map_file.h"
 #include "reports/partition_drawing.h"
+#include "reports/reduction_cost.h"
 #include "reports/result_json.h"
 #include "reports/wording.h"
 
@@ -185,6 +186,7 @@ json report_data(const Study& study, const StudyResult& result, const std::vecto
             {"origin", origin_json(study, result)},
             {"pictures", pictures},
             {"speed", speed_json(result)},
+            {"reduction_cost", reduction_cost(study)},
             {"command", "gradwright design " + quoted(study.file) + " --seed " + std::to_string(result.seed) +
                             " --out OUT"},
             {"study_text", study.text}};

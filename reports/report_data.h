@@ -10,8 +10,9 @@
 
 namespace gradwright {
 
-/// {format, result (as result.json), words, build, plan, map, origin, pictures, speed, command, study_text}.
-/// Lengths in m unless the name says mm; undefined = null. `files`: what lies beside the report.
+/// {format, result (as result.json), words, build, plan, map, origin, pictures, speed, reduction_cost,
+/// command, study_text}. Lengths in m unless the name says mm; undefined = null. `files`: what lies beside
+/// the report.
 nlohmann::json report_data(const Study& study, const StudyResult& result,
                            const std::vector<std::string>& files = {});
 

@@ -422,9 +422,33 @@
       h("p", { class: "note" }, "Only grains whose forces were evaluated count. Times are those of an empty cache."),
       result.beds.length ? h("div", {}, h("h3", { style: "margin-top:1rem" }, "Settled beds"), table([R("packing"), R("coordination"), R("overlap / r"), R("speed / √(g d)"), R("carried weight")],
         result.beds.map((b) => [known(b.packing_fraction) ? b.packing_fraction.toFixed(3) : "–", known(b.mean_coordination) ? b.mean_coordination.toFixed(2) : "–", known(b.max_overlap_ratio) ? b.max_overlap_ratio.toFixed(4) : "–", known(b.speed_number) ? b.speed_number.toExponential(1) : "–", known(b.carried_weight_ratio) ? b.carried_weight_ratio.toFixed(4) : "–"]))) : null),
+    ...reduction_figures(),
     result.constraints?.length ? h("div", { class: "card w12" }, h("h3", {}, "Constraints and limits, as the design found stands to them"), table(["name", R("value"), R("at least"), R("at most"), R("slack"), "kept"],
       result.constraints.map((c) => { const show = (v) => (!known(v) ? "–" : c.unit === "m" ? `${mm(v)} mm` : c.unit === "rad" ? `${((v * 180) / Math.PI).toFixed(3)}°` : v.toFixed(4)); return [c.name, show(c.value), show(c.at_least), show(c.at_most), show(c.slack), c.kept ? "yes" : "NO"]; }))) : null,
     result.given_used.length ? h("div", { class: "card w12" }, h("h3", {}, "Options of the search, given and used"), table(["option", "given → used"], result.given_used.map((g) => [g.option, g.given_used]))) : null));
+
+  // What the reductions in use are known to cost; function declarations are hoisted above their use.
+  function reduction_figures() {
+    const cost = data.reduction_cost, names = result.reductions.length ? result.reductions.join(", ") : "none";
+    if (cost === undefined) return []; // data of earlier versions
+    if (!cost) return [h("div", { class: "card w12" }, h("h3", {}, "Speed against error"), h("p", { class: "note" }, `Reductions in use: ${names}. What this set gains and costs has not been measured. This spreads it beside finer ones and puts the table here:`), h("pre", { tabindex: "0" }, "gradwright tradeoff OUT --around study"))];
+    const levels = cost.levels, used = levels.find((l) => l.name === cost.used), allowed = cost.noise_allowed * used.noise_floor, kinds = ["in use", "finest", "another set"];
+    const kind = (l) => (l === used ? kinds[0] : l.name === "finest" ? kinds[1] : kinds[2]);
+    const draw = (width) => Plot.plot({
+      width, height: Math.max(240, Math.min(320, width * 0.55)), marginLeft: 52, marginRight: 16, marginBottom: 42, style, grid: true,
+      color: { domain: kinds, range: ["#111", "#6b7280", "#56b4e9"], legend: true }, symbol: { domain: kinds, range: ["star", "diamond2", "circle"] },
+      x: { type: "log", label: "speed-up against the finest level", domain: [0.85 * d3.min(levels, (l) => l.speed_up), 1.25 * d3.max(levels, (l) => l.speed_up)], ticks: width < 500 ? 4 : 8, tickFormat: String },
+      y: { label: "GI rms difference to the finest", domain: [0, 1.12 * d3.max(levels, (l) => Math.max(l.gi_rmse, cost.noise_allowed * l.noise_floor))] },
+      marks: [
+        Plot.ruleX(levels, { x: "speed_up", y1: 0, y2: (l) => cost.noise_allowed * l.noise_floor, stroke: "#b7c0c9", strokeWidth: 7, strokeOpacity: 0.6 }),
+        Plot.dot(levels, { x: "speed_up", y: "gi_rmse", fill: kind, symbol: kind, stroke: "#fff", sort: null, r: (l) => (l === used ? 8 : 5), title: (l) => `${l.name}: ${l.meaning}\nspeed-up ${l.speed_up.toFixed(2)}, GI rms ${gi(l.gi_rmse)}, noise floor ${gi(l.noise_floor)}` }), Plot.ruleY([0])],
+    });
+    const word = (l) => (l === used ? "in use" : l.name === "finest" ? "" : !l.within_noise ? "beyond the noise" : !l.overlap_rule_kept ? "overlaps too large" : "free");
+    const said = `Reductions in use: ${names}. On ${cost.own ? "this study" : `another study (${cost.study}; ${cost.source})`} this set is ${used.speed_up.toFixed(1)} times as fast as the finest level, and its GI(y) differs from the finest's by ${gi(used.gi_rmse)} rms, ${used.gi_rmse <= allowed ? "within" : "beyond"} ${cost.noise_allowed} noise floors of ${gi(used.noise_floor)} each; its largest overlap is ${(100 * used.max_overlap_ratio).toFixed(1)} % of a radius${used.overlap_rule_kept ? "" : ", where 3 % is the rule"}.`;
+    return [figure("w6", "Speed against error of the reductions", `Grey bars: ${cost.noise_allowed} noise floors; a mark within its bar cannot be told from the finest with ${cost.seeds} beds.`, draw),
+      h("div", { class: "card w6" }, h("h3", {}, "What the reductions in use cost"), h("p", {}, said), table(["level", R("speed-up"), R("GI rms"), R("floor"), R("packing"), R("overlap / r"), ""],
+        levels.map((l) => [l.name, l.speed_up.toFixed(2), gi(l.gi_rmse), gi(l.noise_floor), `${(100 * l.packing_error).toFixed(1)} %`, `${(100 * l.max_overlap_ratio).toFixed(1)} %`, word(l)])), h("p", { class: "note" }, cost.own ? "Measured by" : "Measured by the command below. For this study itself: gradwright tradeoff OUT --around study."), h("pre", { tabindex: "0" }, cost.command))];
+  }
 
   // ---- inputs and provenance -----------------------------------------------------------------------------------------
   const body = h("tbody");

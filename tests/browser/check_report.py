@@ -228,6 +228,16 @@ def check_sensitivity(figures, data):
             figures.same(bar["title"], [bar["x2"] if value >= 0 else bar["x1"]], [value], plot["x"])
 
 
+def check_reductions(figures, data):
+    cost = data.get("reduction_cost")
+    if cost:
+        plot = figures.plot("Speed against error of the reductions")
+        # the axis of speed is logarithmic: what an eye can tell apart is a share of the value
+        figures.same("speed-up", [math.log(p[0]) for p in plot["dots"][0]], [math.log(l["speed_up"]) for l in cost["levels"]], [math.log(v) for v in plot["x"]])
+        figures.same("GI rms", [p[1] for p in plot["dots"][0]], [l["gi_rmse"] for l in cost["levels"]], plot["y"])
+        figures.same("floors", [max(r[1], r[2]) for r in plot["rules"][0]], [cost["noise_allowed"] * l["noise_floor"] for l in cost["levels"]], plot["y"])
+
+
 def check_words(browser, result, data):
     """Numbers of the first screen and of the tables, as text: rounded to the digits shown, never to others."""
     def shown(text, value, digits, what):
@@ -376,6 +386,7 @@ def main():
         check_gradation(figures, result, data)
         check_search(figures, result)
         check_sensitivity(figures, data)
+        check_reductions(figures, data)
         drawn = {f["title"] for f in browser.run(COLLECT) if f["plots"]}
         assert drawn == figures.checked, f"figures that nothing holds against the JSON: {drawn - figures.checked}"
         print(f"{len(figures.checked)} figures with {figures.values} values are the JSON's")

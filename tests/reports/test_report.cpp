@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
 #include <regex>
 
 #include "reports/grain_picture.h"
 #include "reports/html_report.h"
+#include "reports/reduction_cost.h"
 #include "reports/report_data.h"
 #include "reports/summary.h"
 #include "reports/wording.h"
@@ -73,6 +76,50 @@ TEST(Report, origin_shares_sum_to_one_and_w_ends_at_one) {
     EXPECT_NEAR(sum, 1, 1e-3);  // rounded to 1e-7 in some hundred cells
     EXPECT_DOUBLE_EQ(origin["cumulative"].back().get<double>(), 1);
     EXPECT_DOUBLE_EQ(origin["cumulative"].front().get<double>(), 0);
+}
+
+TEST(Report, knows_what_the_reductions_in_use_cost) {
+    // the set of the first example, as docs/speed-against-error.md measured it whole
+    Study study = fixture::study();
+    study.reductions = {"early_stop", "fines_cut", "shallow_bed", "strip_map"};
+    study.scene.softening = 1e-4;
+    study.scene.rayleigh_fraction = 0.3;
+    const auto cost = report_data(study, fixture::result(study))["reduction_cost"];
+    ASSERT_TRUE(cost.is_object());
+    EXPECT_EQ(cost["used"], "study");
+    EXPECT_EQ(cost["own"], false);
+    std::ifstream file(std::string(GRADWRIGHT_SOURCE_DIR) + "/docs/speed-against-error.md");
+    const std::string page((std::istreambuf_iterator<char>(file)), {});
+    const std::string reduced = page.substr(page.find("<!-- reduced: begin"));
+    for (const auto& level : cost["levels"]) {
+        if (level["name"] != "study") continue;
+        char row[64];
+        std::snprintf(row, sizeof row, "| %.2f | %.3f | %.3f |", level["speed_up"].get<double>(),
+                      level["gi_rmse"].get<double>(), level["noise_floor"].get<double>());
+        EXPECT_THAT(reduced, HasSubstr(row));
+    }
+    // one setting aside, and nothing is known
+    study.scene.rayleigh_fraction = 0.31;
+    EXPECT_TRUE(reduction_cost(study).is_null());
+    study.scene.rayleigh_fraction = 0.3;
+    study.reductions.pop_back();
+    EXPECT_TRUE(reduction_cost(study).is_null());
+}
+
+TEST(Report, the_study_s_own_tradeoff_stands_for_it) {
+    nlohmann::json level = {{"name", "study"}, {"gi_rmse", 0.02}, {"beds", nlohmann::json::array()}};
+    nlohmann::json missing = {{"name", "finest"}, {"gi_rmse", nullptr}};
+    nlohmann::json tradeoff = {{"study", "s"},
+                               {"seeds", 3},
+                               {"noise_allowed", 2},
+                               {"provenance", {{"host", {{"isa", "AVX2"}}}}},
+                               {"levels", {missing, level}}};
+    const auto cost = reduction_cost(tradeoff, "gradwright tradeoff OUT");
+    EXPECT_EQ(cost["own"], true);
+    EXPECT_EQ(cost["levels"].size(), 1u);
+    EXPECT_FALSE(cost["levels"][0].contains("beds"));
+    tradeoff["levels"] = {missing};
+    EXPECT_TRUE(reduction_cost(tradeoff, "").is_null());
 }
 
 TEST(GrainPicture, base64_matches_rfc_4648) {
