@@ -137,7 +137,11 @@ ExitCode run_compare(const CompareCommand& command, CommonOptions common) {
     options.run = run_options(common, progress);
     // Each strategy's design is a folder like any design's: `report OUT/bobyqa` reads it.
     options.after_strategy = [&](const std::string& name, const StudyResult& result) {
-        writing(folder, [&] { write_outputs(study, result, folder + "/" + name); });
+        std::vector<std::string> words;
+        if (name != "map") words = {"--strategy", name};
+        if (searches_one_fidelity(name)) words.insert(words.end(), {"--fidelity", command.fidelity});
+        for (const std::string& one : common.set) words.insert(words.end(), {"--set", one});
+        writing(folder, [&] { write_outputs(study, result, folder + "/" + name, Film::none, words); });
     };
     const StrategyComparison comparison = compare_strategies(study, options);
     progress.finish();

@@ -147,6 +147,17 @@ void hand_over_to(const std::string& folder, const CommonOptions& common) {
     }
 }
 
+/// What decides the numbers beside the study file. `set`: as in RunRecord.
+std::vector<std::string> called_with(const DesignOptions& options, const std::vector<std::string>& set) {
+    std::vector<std::string> words;
+    if (options.strategy != "map") words.insert(words.end(), {"--strategy", options.strategy});
+    if (!options.fidelity.empty()) words.insert(words.end(), {"--fidelity", options.fidelity});
+    if (searches_one_fidelity(options.strategy) && options.budget > 0)
+        words.insert(words.end(), {"--budget", std::to_string(options.budget)});
+    for (const std::string& one : set) words.insert(words.end(), {"--set", one});
+    return words;
+}
+
 ExitCode run_design(DesignOptions options, CommonOptions common) {
     const bool resumed = find_resumed(options, common);
     if (options.study.empty() && !resumed)
@@ -174,9 +185,11 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
     if (common.seed) set.push_back(fmt::format("run.seed={}", *common.seed));
     RunRecord record = record_of(study, set, options.strategy, options.fidelity, options.budget);
     record.film = options.film;
-    if (resumed)
-        refuse_other_run(read_record(folder), record, folder);
-    else
+    if (resumed) {
+        const RunRecord there = read_record(folder);
+        refuse_other_run(there, record, folder);
+        record.set = there.set;
+    } else
         writing(folder, [&] { write_record(folder, record); });
     ProgressLine progress(common.quiet);
     StatusFile status(folder);
@@ -211,7 +224,8 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
                             "is there space and a right to write in '" + folder + "'?");
     try {
         files = writing(folder, [&] {
-            return write_outputs(study, result, folder, options.film ? Film::drawn : Film::none);
+            return write_outputs(study, result, folder, options.film ? Film::drawn : Film::none,
+                                 called_with(options, record.set));
         });
     } catch (const Failure& failure) {
         unwritten = failure;

@@ -26,7 +26,8 @@ std::string text_of(const nlohmann::json& object, int indent) {
 }  // namespace
 
 std::vector<std::string> write_outputs(const Study& study, const StudyResult& result,
-                                       const std::string& folder, Film film) {
+                                       const std::string& folder, Film film,
+                                       const std::vector<std::string>& called_with) {
     make_folder(folder);
     const auto in_folder = [&](const std::string& name) { return folder + "/" + name; };
     std::vector<const GradationMap*> maps;
@@ -62,7 +63,7 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
     if (filmed)
         write_file(in_folder("film.webp"), film_webp(scene_of(study, result.design, false, result.seed),
                                                      result.design.partition, result.snapshots));
-    const nlohmann::json data = report_data(study, result, files);
+    const nlohmann::json data = report_data(study, result, files, called_with);
     write_file(in_folder("report_data.json"), text_of(data, -1));
     write_report(data, in_folder("report.html"));
     return files;

@@ -16,7 +16,8 @@ enum class Film { none, drawn };
 /// film.webp into `folder` (made when missing). Returns the names written, relative to `folder`, in the order
 /// above. Throws std::runtime_error with path and system text on any I/O error (exit code 6).
 std::vector<std::string> write_outputs(const Study& study, const StudyResult& result,
-                                       const std::string& folder, Film film = Film::none);
+                                       const std::string& folder, Film film = Film::none,
+                                       const std::vector<std::string>& called_with = {});
 
 /// `report OUT`: rebuilds OUT/report.html from OUT/report_data.json. Returns the page's path. Throws
 /// std::runtime_error.

@@ -145,6 +145,21 @@ std::string quoted(const std::string& word) {
     return out + "'";
 }
 
+/// One line that makes the result again. The seed stands at its end, wherever it was given.
+std::string command_of(const Study& study, const StudyResult& result,
+                       const std::vector<std::string>& called_with) {
+    std::string command = "gradwright design " + quoted(study.file);
+    for (std::size_t k = 0; k < called_with.size(); ++k) {
+        if (called_with[k] == "--set" && k + 1 < called_with.size() &&
+            called_with[k + 1].starts_with("run.seed=")) {
+            ++k;
+            continue;
+        }
+        command += " " + quoted(called_with[k]);
+    }
+    return command + " --seed " + std::to_string(result.seed) + " --out OUT";
+}
+
 constexpr std::size_t kPictureGrains = 60000;  // five pictures of 8 bytes a grain: 3.2 MB of base64
 
 }  // namespace
@@ -156,7 +171,8 @@ std::vector<std::size_t> shown_instants(std::size_t count, std::size_t most) {
     return out;
 }
 
-json report_data(const Study& study, const StudyResult& result, const std::vector<std::string>& files) {
+json report_data(const Study& study, const StudyResult& result, const std::vector<std::string>& files,
+                 const std::vector<std::string>& called_with) {
     const Wording words = wording(study, result);
     const Scene scene = scene_of(study, result.design, false, result.seed);
     json pictures = json::array();
@@ -187,8 +203,7 @@ json report_data(const Study& study, const StudyResult& result, const std::vecto
             {"pictures", pictures},
             {"speed", speed_json(result)},
             {"reduction_cost", reduction_cost(study)},
-            {"command", "gradwright design " + quoted(study.file) + " --seed " + std::to_string(result.seed) +
-                            " --out OUT"},
+            {"command", command_of(study, result, called_with)},
             {"study_text", study.text}};
 }
 

@@ -14,7 +14,8 @@ namespace gradwright {
 /// command, study_text}. Lengths in m unless the name says mm; undefined = null. `files`: what lies beside
 /// the report.
 nlohmann::json report_data(const Study& study, const StudyResult& result,
-                           const std::vector<std::string>& files = {});
+                           const std::vector<std::string>& files = {},
+                           const std::vector<std::string>& called_with = {});
 
 /// Which of `count` instants are drawn and written for ParaView: the first, the last and evenly between them,
 /// at most `most`; a film keeps many more.

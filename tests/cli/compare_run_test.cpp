@@ -84,6 +84,11 @@ TEST_F(CompareVerb, finished_designs_stand_side_by_side_with_the_inputs_that_dif
     const json r = json::parse(outcome.out);
     EXPECT_EQ(r, json::parse(content(work() / "both/comparison.json")));
     EXPECT_THAT(content(work() / "both/comparison.html"), HasSubstr("designs meet their target"));
+    std::ifstream file(std::string(GRADWRIGHT_SOURCE_DIR) + "/docs/schema/designs.schema.json");
+    const json schema = json::parse(file);
+    for (const json& name : schema["required"]) EXPECT_TRUE(r.contains(name)) << name;
+    for (const json& name : schema["properties"]["designs"]["items"]["required"])
+        for (const json& row : r["designs"]) EXPECT_TRUE(row.contains(name)) << name;
     EXPECT_TRUE(r["same_target"]);
     ASSERT_EQ(r["designs"].size(), 2u);
     for (const auto& [k, folder] : {std::pair{0, "three"}, std::pair{1, "deep/four"}}) {
