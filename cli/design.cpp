@@ -15,6 +15,7 @@
 #include "cli/spec.h"
 #include "optimise/journal.h"
 #include "optimise/strategies.h"
+#include "reports/film.h"
 #include "reports/output_folder.h"
 #include "reports/result_json.h"
 #include "reports/summary.h"
@@ -30,6 +31,7 @@ struct DesignOptions {
     std::string fidelity;  ///< empty = map; only the plain strategies have a choice
     int budget = 0;        ///< 0 = the study's, or StrategyChoice's
     bool no_spec = false;  ///< leave out the hand-over
+    bool film = false;     ///< keep many instants of the spreads and draw them
 };
 
 void refuse_contradictions(const DesignOptions& options) {
@@ -60,11 +62,12 @@ ExitCode exit_code_of(const StudyResult& result) {
 
 /// With --force: takes away what an earlier design left, so that two runs are never mixed in one folder. Only
 /// files whose names this program gives: evaluations (000012_full.json), spreads (spread-0123.bin), instants
-/// of the grains (particles_0001.vtkhdf), the hand-over and what says that a run is finished.
+/// of the grains (particles_0001.vtkhdf), the film, the hand-over and what says that a run is finished.
 void remove_earlier(const std::string& folder) {
     namespace fs = std::filesystem;
     const std::regex evaluation("[0-9]{6}_[a-z]+[.]json"),
-        instant("particles_[0-9]{4}[.]vtkhdf|(run|status|result)[.]json"), spread("spread-[0-9a-f]+[.]bin");
+        instant("particles_[0-9]{4}[.]vtkhdf|(run|status|result)[.]json|film[.]webp"),
+        spread("spread-[0-9a-f]+[.]bin");
     std::error_code failed;
     for (const auto& [place, pattern] : {std::pair{fs::path(folder) / "journal", &evaluation},
                                          {fs::path(folder) / "spreads", &spread},
@@ -104,6 +107,7 @@ bool find_resumed(DesignOptions& options, CommonOptions& common) {
     options.strategy = there.strategy;
     options.fidelity = there.fidelity;
     options.budget = there.budget;
+    options.film = there.film;
     return true;
 }
 
@@ -143,6 +147,17 @@ void hand_over_to(const std::string& folder, const CommonOptions& common) {
     }
 }
 
+/// What decides the numbers beside the study file. `set`: as in RunRecord.
+std::vector<std::string> called_with(const DesignOptions& options, const std::vector<std::string>& set) {
+    std::vector<std::string> words;
+    if (options.strategy != "map") words.insert(words.end(), {"--strategy", options.strategy});
+    if (!options.fidelity.empty()) words.insert(words.end(), {"--fidelity", options.fidelity});
+    if (searches_one_fidelity(options.strategy) && options.budget > 0)
+        words.insert(words.end(), {"--budget", std::to_string(options.budget)});
+    for (const std::string& one : set) words.insert(words.end(), {"--set", one});
+    return words;
+}
+
 ExitCode run_design(DesignOptions options, CommonOptions common) {
     const bool resumed = find_resumed(options, common);
     if (options.study.empty() && !resumed)
@@ -155,6 +170,7 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
         common.set.push_back(fmt::format("run.max_spreads={}", options.budget));
     Study study = study_of(options, common, resumed);
     if (options.strategy != "map") refuse_scale_up(study, "--strategy " + options.strategy);
+    if (options.film) refuse_scale_up(study, "--film");
     const StudyEstimate cost = estimate(study, thread_count(common));
     refuse_impossible(study, cost);
     study.warnings = all_warnings(study, cost);  // they go into every result
@@ -168,9 +184,12 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
     std::vector<std::string> set = common.set;
     if (common.seed) set.push_back(fmt::format("run.seed={}", *common.seed));
     RunRecord record = record_of(study, set, options.strategy, options.fidelity, options.budget);
-    if (resumed)
-        refuse_other_run(read_record(folder), record, folder);
-    else
+    record.film = options.film;
+    if (resumed) {
+        const RunRecord there = read_record(folder);
+        refuse_other_run(there, record, folder);
+        record.set = there.set;
+    } else
         writing(folder, [&] { write_record(folder, record); });
     ProgressLine progress(common.quiet);
     StatusFile status(folder);
@@ -182,6 +201,7 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
     run.journal_folder = folder + "/journal";
     run.spread_folder = folder + "/spreads";
     run.resume = resumed;
+    if (options.film) run.snapshots = kFilmInstants;
     if (!common.quiet)
         fmt::print(stderr, "gradwright: {} {}; results go to {}\n", resumed ? "going on with" : "designing",
                    study.name, folder);
@@ -203,10 +223,15 @@ ExitCode run_design(DesignOptions options, CommonOptions common) {
         unwritten = Failure(ExitCode::io, result.unwritten,
                             "is there space and a right to write in '" + folder + "'?");
     try {
-        files = writing(folder, [&] { return write_outputs(study, result, folder); });
+        files = writing(folder, [&] {
+            return write_outputs(study, result, folder, options.film ? Film::drawn : Film::none,
+                                 called_with(options, record.set));
+        });
     } catch (const Failure& failure) {
         unwritten = failure;
     }
+    if (options.film && result.snapshots.empty() && !common.quiet)
+        fmt::print(stderr, "gradwright: no film: no design was spread with both powders\n");
     if (common.json) {
         nlohmann::json object = to_json(study, result, files);
         if (unwritten) object.update(error_json(unwritten->code, unwritten->message, unwritten->mend));
@@ -257,6 +282,11 @@ void add_design(CLI::App& app, Call& call) {
                      "map, mf: spreads in all, instead of the study's; the others: evaluations, default 60")
         ->type_name("N")
         ->check(CLI::Range(1, 1000000));
+    verb->add_flag(
+        "--film", options->film,
+        fmt::format("Also OUT/film.webp, an animated picture of the first confirming spread, cut along x and "
+                    "from above: {} instants, a few MB; OUT/spreads takes some 2 kB a grain and spread more",
+                    kFilmInstants));
     verb->add_flag("--no-spec", options->no_spec, "Leave out the hand-over (OUT/spec)");
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);

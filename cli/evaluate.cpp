@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "cli/run_options.h"
 #include "optimise/design_run.h"
 #include "reports/composition_json.h"
+#include "reports/film.h"
 #include "reports/result_json.h"
 #include "reports/safe_write.h"
 #include "reports/spread_figures.h"
@@ -26,7 +28,7 @@ struct EvaluateOptions {
     std::string study;
     std::string fidelity = "full";
     std::string design;  ///< result.json, partition.json or a design object; empty = the study's start
-    bool composition = false, figures = false;
+    bool composition = false, figures = false, film = false;
     std::string melt_depth, melt_width;  ///< lengths with their units; given together or not at all
 };
 
@@ -81,6 +83,8 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
     const Fidelity fidelity = fidelity_of(options.fidelity);
     if (options.figures && fidelity != Fidelity::full)
         throw Failure(ExitCode::usage, "--figures needs the grains of a full spread", "use --fidelity full");
+    if (options.film && fidelity != Fidelity::full)
+        throw Failure(ExitCode::usage, "--film needs the grains of a full spread", "use --fidelity full");
     Study study = load_study(options.study, common);
     if (fidelity == Fidelity::full || fidelity == Fidelity::lammps)
         refuse_scale_up(study, "evaluate --fidelity " + std::string(to_string(fidelity)));
@@ -95,15 +99,16 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
                 fmt::print(stderr, "gradwright: warning: {}\n", warning);
     }
     const Design design = options.design.empty() ? start_design(study) : read_design(options.design, study);
-    const bool writes = !common.out.empty() || options.figures;
+    const bool writes = !common.out.empty() || options.figures || options.film;
     const std::string folder = writes ? make_out_folder(common, study.name) : std::string();
     ProgressLine progress(common.quiet);
     RunOptions run = run_options(common, progress);
     if (!folder.empty()) run.lammps_folder = folder + "/lammps";
     if (options.figures) run.snapshots = kFigureInstants;
+    if (options.film) run.snapshots = std::max(options.figures ? kFigureInstants : 0, kFilmInstants);
     SpreadResult spread;
-    Evaluation evaluation =
-        evaluate_once(study, design, fidelity, study.seed, run, options.figures ? &spread : nullptr);
+    Evaluation evaluation = evaluate_once(study, design, fidelity, study.seed, run,
+                                          options.figures || options.film ? &spread : nullptr);
     progress.finish();
     evaluation.health.warnings.insert(evaluation.health.warnings.begin(), study.warnings.begin(),
                                       study.warnings.end());
@@ -127,6 +132,12 @@ ExitCode run_evaluate(const EvaluateOptions& options, const CommonOptions& commo
                 files.push_back(name);
         });
     }
+    if (options.film && evaluation.health.ok())
+        keep([&] {
+            write_file(folder + "/film.webp", film_webp(scene_of(study, design, false, study.seed),
+                                                        design.partition, spread.snapshots));
+            files.push_back("film.webp");
+        });
     nlohmann::json object = evaluation_json(study, evaluation, files);
     if (composition && evaluation.health.ok())
         object["composition"] = composition_json(study, evaluation, composition->pool);
@@ -181,6 +192,9 @@ void add_evaluate(CLI::App& app, Call& call) {
         "--figures", options->figures,
         "Pictures and ParaView files of the layer and of the heap ahead of the blade; without --out to "
         "runs/<study>/<n>");
+    verb->add_flag("--film", options->film,
+                   "Also film.webp, an animated picture of the spread, cut along x and from above, a few MB; "
+                   "without --out to runs/<study>/<n>");
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);
     add_run_options(*verb, call.options);

@@ -66,6 +66,7 @@ void write_record(const std::string& folder, const RunRecord& record) {
                          {"strategy", record.strategy},
                          {"fidelity", record.fidelity},
                          {"budget", record.budget},
+                         {"film", record.film},
                          {"inputs", inputs},
                          {"engine", record.engine}};
     write_file(folder + "/run.json", json_text(object) + "\n");
@@ -86,6 +87,7 @@ RunRecord read_record(const std::string& folder) {
         object.at("fidelity").get_to(record.fidelity);
         object.at("budget").get_to(record.budget);
         object.at("engine").get_to(record.engine);
+        record.film = object.value("film", false);  // runs of earlier versions have none
         for (const json& pair : object.at("inputs"))
             record.inputs.emplace_back(pair.at(0).get<std::string>(), pair.at(1).get<std::string>());
         return record;
@@ -104,6 +106,7 @@ std::vector<std::string> differences(const RunRecord& there, const RunRecord& no
     compare("--strategy", there.strategy, now.strategy);
     compare("--fidelity", there.fidelity, now.fidelity);
     compare("--budget", std::to_string(there.budget), std::to_string(now.budget));
+    compare("--film", there.film ? "yes" : "no", now.film ? "yes" : "no");
     compare("engine", there.engine, now.engine);
     std::map<std::string, std::string> new_values(now.inputs.begin(), now.inputs.end());
     for (const auto& [key, value] : there.inputs) {

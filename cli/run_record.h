@@ -18,6 +18,7 @@ struct RunRecord {
     std::vector<std::string> set;  ///< --set and --seed
     std::string strategy, fidelity;
     int budget = 0;
+    bool film = false;                                        ///< the spreads keep instants for a film
     std::vector<std::pair<std::string, std::string>> inputs;  ///< resolved: key and value
     std::string engine;                                       ///< engine format and instruction set
 };

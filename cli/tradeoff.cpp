@@ -4,17 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "cli/check.h"
 #include "cli/common.h"
 #include "cli/progress.h"
 #include "cli/run_options.h"
+#include "cli/run_record.h"
+#include "reports/output_folder.h"
+#include "reports/reduction_cost.h"
 #include "reports/safe_write.h"
 #include "reports/tradeoff_report.h"
 
 namespace gradwright::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct TradeoffCommand {
     std::string study, fidelity = "map", around = "finest";
@@ -47,19 +53,49 @@ void print_plan(const Tradeoff& t, int threads, bool to_stdout) {
         kAssumedSpeed / 1e6);
 }
 
+/// The report of a finished design shows what its own reductions cost, instead of the shipped table.
+void show_in_report(const std::string& folder, const nlohmann::json& tradeoff,
+                    const TradeoffCommand& command) {
+    const std::string file = folder + "/report_data.json";
+    if (!fs::exists(file)) return;
+    std::string again =
+        fmt::format("gradwright tradeoff OUT --around {} --seeds {}", command.around, command.seeds);
+    if (command.fidelity != "map") again += " --fidelity " + command.fidelity;
+    for (const std::string& level : command.levels) again += fmt::format(" --level '{}'", level);
+    nlohmann::json cost = reduction_cost(tradeoff, again);
+    if (cost.is_null()) return;
+    nlohmann::json report = nlohmann::json::parse(read_file(file));
+    report["reduction_cost"] = std::move(cost);
+    write_file(file, json_text(report) + "\n");
+    rebuild_report(folder);
+}
+
 ExitCode run_tradeoff_command(const TradeoffCommand& command, const CommonOptions& common) {
     TradeoffOptions options;
     options.seeds = command.seeds;
     options.fidelity = fidelity_of(command.fidelity);
     options.around_study = command.around == "study";
     options.run.threads = thread_count(common);
-    const Study study = load_study(command.study, common);
-    refuse_scale_up(study, "tradeoff");
+    const bool finished = fs::is_directory(command.study);
+    if (finished && !common.out.empty())
+        throw Failure(ExitCode::usage, "tradeoff OUT writes into that folder: --out names another",
+                      "leave --out away");
+    if (finished && (!common.set.empty() || common.seed))
+        throw Failure(ExitCode::usage, "--set and --seed change the study that the design in OUT answers",
+                      "leave them out, or name the study file");
     const StudyReader read = [&](const std::vector<std::string>& more) {
+        if (finished) {
+            const RunRecord record = read_record(command.study);
+            std::vector<std::string> set = record.set;
+            set.insert(set.end(), more.begin(), more.end());
+            return parse_study(record.study_text, record.study_file, set);
+        }
         CommonOptions with = common;
         with.set.insert(with.set.end(), more.begin(), more.end());
         return load_study(command.study, with);
     };
+    const Study study = read({});
+    refuse_scale_up(study, "tradeoff");
     refuse_impossible(study, estimate(study, thread_count(common)));
     Tradeoff result = plan_tradeoff(read, options);
     for (const std::string& wanted : command.levels) {
@@ -83,11 +119,14 @@ ExitCode run_tradeoff_command(const TradeoffCommand& command, const CommonOption
     }
     if (!common.quiet) print_plan(result, thread_count(common), false);
 
-    const std::string folder = make_out_folder(common, study.name);
+    const std::string folder = finished ? command.study : make_out_folder(common, study.name);
+    if (finished && fs::exists(folder + "/tradeoff.json") && !common.force)
+        throw Failure(ExitCode::usage, fmt::format("'{}/tradeoff.json' is there already", folder),
+                      "add --force to write it again");
     ProgressLine progress(common.quiet);
     options.run = run_options(common, progress);
     options.run.snapshots = 0;
-    options.run.journal_folder = folder + "/journal";
+    options.run.journal_folder = folder + (finished ? "/tradeoff" : "/journal");
     const auto write = [&](const Tradeoff& t) {
         const nlohmann::json object = tradeoff_json(study, t);
         write_file(folder + "/tradeoff.json", json_text(object) + "\n");
@@ -98,11 +137,14 @@ ExitCode run_tradeoff_command(const TradeoffCommand& command, const CommonOption
     run_tradeoff(result, read, options);
     progress.finish();
     writing(folder, [&] { write(result); });
+    if (finished) writing(folder, [&] { show_in_report(folder, tradeoff_json(study, result), command); });
     if (common.json)
         fmt::print("{}\n", json_text(tradeoff_json(study, result)));
     else
         fmt::print("{}", tradeoff_text(study, result));
-    if (!common.quiet) fmt::print(stderr, "gradwright: tradeoff.json and tradeoff.html are in {}\n", folder);
+    if (!common.quiet)
+        fmt::print(stderr, "gradwright: tradeoff.json and tradeoff.html are in {}{}\n", folder,
+                   finished ? ", and report.html shows them" : "");
     if (result.status == "interrupted") {
         fmt::print(
             stderr,
@@ -124,7 +166,9 @@ void add_tradeoff(CLI::App& app, Call& call) {
     auto command = std::make_shared<TradeoffCommand>();
     CLI::App* verb = app.add_subcommand(
         "tradeoff", "Speed against error: what each reduction gains, and what it costs in gradation");
-    verb->add_option("STUDY", command->study, "Study file (TOML)")->required();
+    verb->add_option("STUDY|OUT", command->study,
+                     "Study file (TOML), or the folder that 'design' wrote: its report then shows the table")
+        ->required();
     verb->add_option("--seeds", command->seeds, "Beds a level; the noise is measured between them; default 3")
         ->type_name("N")
         ->check(CLI::Range(2, 1000));

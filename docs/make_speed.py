@@ -7,7 +7,9 @@ Answers are kept in runs/speed/, so that a second call only rewrites the page; d
 about twenty minutes on two free cores, `reduced` seven, `threads` a minute once its bed is cached, `sizes` some minutes. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
+import json
 import os
+import sys
 
 import measured
 from measured import ROOT, shown
@@ -77,5 +79,21 @@ def lammps_table():
     return "\n".join(rows)
 
 
+def keep_levels():
+    """What the two tables say of each set of reductions, for the reports of designs that use it: linked into the program."""
+    of_setting = ("names", "softening", "rayleigh_fraction", "coarse_factor", "sleep")
+    of_level = ("name", "meaning", "status", "reason", "grains", "steps", "seconds", "speed_up", "gi_rmse", "noise_floor", "packing_error", "max_overlap_ratio", "within_noise", "overlap_rule_kept")
+    tables = []
+    for name, words in (("tradeoff", TRADEOFF), ("reduced", REDUCED)):
+        a = answer(name, words)
+        levels = [{**{k: l[k] for k in of_level}, "reductions": {k: l["reductions"][k] for k in of_setting}} for l in a["levels"] if l["grains"] is not None]
+        tables.append({"command": shown(words), "study": a["study"] + " at half its length", "seeds": a["seeds"], "noise_allowed": a["noise_allowed"], "isa": a["provenance"]["host"]["isa"], "levels": levels})
+    with open(os.path.join(measured.DOCS, "data", "speed-against-error.json"), "w") as file:
+        json.dump(tables, file, indent=1, sort_keys=True)
+        file.write("\n")
+
+
 TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
 measured.fill(PAGE, TABLES)
+if {"tradeoff", "reduced"} & set(sys.argv[1:] or TABLES):
+    keep_levels()

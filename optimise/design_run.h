@@ -18,7 +18,7 @@ struct RunOptions {
     std::string journal_folder;  ///< one fsynced file per finished evaluation; empty = none
     std::string spread_folder;   ///< every finished spread, kept whole for a resumed run; empty = none
     bool resume = false;         ///< what stands in the two folders is this very run's beginning
-    int snapshots = 2;
+    int snapshots = 3;           ///< instants kept of a labelled spread, between its first and its last
     std::function<void(const std::string& stage, double fraction)> progress;
     const std::atomic<bool>* stop = nullptr;
     SpreadFunction spread;      ///< empty = run_spread

@@ -10,10 +10,6 @@
 #include "optimise/study_file.h"
 
 namespace gradwright {
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOverlapRule = 0.03;  // physics.md 4: warn beyond
 
 ReductionSettings settings_of(const Study& study) {
     ReductionSettings s;
@@ -26,6 +22,11 @@ ReductionSettings settings_of(const Study& study) {
     s.sleep = study.scene.sleep;
     return s;
 }
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kOverlapRule = 0.03;  // physics.md 4: warn beyond
 
 void take(ReductionSettings& settings, const std::string& name) {
     if (!settings.has(name)) settings.names.push_back(name);

@@ -41,6 +41,9 @@ struct ReductionSettings {
     std::vector<std::string> overrides() const;
 };
 
+/// Those of the study as it is.
+ReductionSettings settings_of(const Study& study);
+
 struct TradeoffRun {
     std::uint64_t seed = 0;
     RunHealth health;

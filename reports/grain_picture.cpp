@@ -11,7 +11,8 @@
 namespace gradwright {
 namespace {
 
-/// The highest grain of each cell of half a median grain, plus every grain that touches the plane y = W/2.
+/// The highest grain of each cell of half a median grain, plus every grain that touches the plane y = W/2 or
+/// lies in the outermost row of either side.
 std::vector<std::size_t> visible(const Snapshot& s, const std::vector<float>& y,
                                  const std::vector<std::size_t>& kept, double width) {
     double radius = 0;
@@ -28,7 +29,7 @@ std::vector<std::size_t> visible(const Snapshot& s, const std::vector<float>& y,
     std::vector<std::size_t> top(nx * ny, SIZE_MAX);
     std::vector<std::size_t> out;
     for (std::size_t i : kept) {
-        if (std::abs(y[i] - width / 2) < s.radius[i]) {
+        if (std::abs(y[i] - width / 2) < s.radius[i] || std::min<double>(y[i], width - y[i]) < 2 * radius) {
             out.push_back(i);
             continue;
         }
@@ -60,7 +61,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     return out;
 }
 
-nlohmann::json grain_picture(const Snapshot& s, const Scene& scene, std::size_t most) {
+nlohmann::json grain_picture(const Snapshot& s, const Scene& scene, std::size_t most, std::size_t limit) {
     const double end = scene.dispenser_length + scene.land + scene.platform_length + scene.second_land;
     const double floor = -1.5 * deepest_floor(scene) - 1e-4;
     std::vector<float> y(s.y);
@@ -74,6 +75,11 @@ nlohmann::json grain_picture(const Snapshot& s, const Scene& scene, std::size_t 
     if (kept.size() > most) kept = visible(s, y, kept, scene.width);
     std::sort(kept.begin(), kept.end(),
               [&](std::size_t a, std::size_t b) { return s.z[a] != s.z[b] ? s.z[a] < s.z[b] : a < b; });
+    if (kept.size() > limit) {
+        std::vector<std::size_t> some;
+        for (std::size_t k = 0; k < limit; ++k) some.push_back(kept[k * kept.size() / limit]);
+        kept = std::move(some);
+    }
 
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, radius_max = 0;
     const std::vector<float>* axes[3] = {&s.x, &y, &s.z};

@@ -11,6 +11,8 @@ extern "C" {
 extern const char gradwright_page_css[], gradwright_page_css_end[];
 extern const char gradwright_page_js[], gradwright_page_js_end[];
 extern const char gradwright_grains_js[], gradwright_grains_js_end[];
+extern const char gradwright_scene_js[], gradwright_scene_js_end[];
+extern const char gradwright_three_js[], gradwright_three_js_end[];
 extern const char gradwright_d3_js[], gradwright_d3_js_end[];
 extern const char gradwright_plot_js[], gradwright_plot_js_end[];
 }
@@ -90,9 +92,14 @@ std::string report_html(const nlohmann::json& data) {
     parts.words = words.value("verdict", "");
     parts.state = words.value("state", "failed");
     parts.first_figure = "figures";
-    return page_html(parts, data,
-                     {between(gradwright_grains_js, gradwright_grains_js_end),
-                      between(gradwright_page_js, gradwright_page_js_end)});
+    std::vector<std::string_view> scripts;
+    // half a megabyte: only where there are grains to draw
+    if (!data.value("pictures", nlohmann::json::array()).empty())
+        scripts.push_back(between(gradwright_three_js, gradwright_three_js_end));
+    scripts.push_back(between(gradwright_grains_js, gradwright_grains_js_end));
+    scripts.push_back(between(gradwright_scene_js, gradwright_scene_js_end));
+    scripts.push_back(between(gradwright_page_js, gradwright_page_js_end));
+    return page_html(parts, data, scripts);
 }
 
 void write_report(const nlohmann::json& data, const std::string& html_path) {

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "reports/film.h"
 #include "reports/heap_order_figure.h"
 #include "reports/html_report.h"
 #include "reports/map_file.h"
@@ -25,7 +26,8 @@ std::string text_of(const nlohmann::json& object, int indent) {
 }  // namespace
 
 std::vector<std::string> write_outputs(const Study& study, const StudyResult& result,
-                                       const std::string& folder) {
+                                       const std::string& folder, Film film,
+                                       const std::vector<std::string>& called_with) {
     make_folder(folder);
     const auto in_folder = [&](const std::string& name) { return folder + "/" + name; };
     std::vector<const GradationMap*> maps;
@@ -38,9 +40,15 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
                                       "partition.json", "partition.svg", "study.toml"};
     if (!map.gi.empty()) files.push_back("gi_map.vtkhdf");
     if (result.extrapolated) files.push_back("heap_order.svg");
-    for (std::size_t i = 0; i < result.snapshots.size(); ++i)
-        files.push_back(fmt::format("particles_{:04}.vtkhdf", i));
+    std::vector<Snapshot> instants;
+    for (const std::size_t k : shown_instants(result.snapshots.size())) {
+        files.push_back(fmt::format("particles_{:04}.vtkhdf", instants.size()));
+        instants.push_back(result.snapshots[k]);
+    }
     if (!result.snapshots.empty()) files.push_back("particles.vtkhdf.series");
+
+    const bool filmed = film == Film::drawn && result.snapshots.size() > 1;
+    if (filmed) files.push_back("film.webp");
 
     write_file(in_folder("study.toml"), study.text);
     write_file(in_folder("result.json"), text_of(to_json(study, result, files), 2));
@@ -51,8 +59,11 @@ std::vector<std::string> write_outputs(const Study& study, const StudyResult& re
     if (!map.gi.empty())
         write_map_file(map, scene_of(study, result.design, false, result.seed).gap,
                        in_folder("gi_map.vtkhdf"));
-    write_particle_series(result.snapshots, folder);
-    const nlohmann::json data = report_data(study, result, files);
+    write_particle_series(instants, folder);
+    if (filmed)
+        write_file(in_folder("film.webp"), film_webp(scene_of(study, result.design, false, result.seed),
+                                                     result.design.partition, result.snapshots));
+    const nlohmann::json data = report_data(study, result, files, called_with);
     write_file(in_folder("report_data.json"), text_of(data, -1));
     write_report(data, in_folder("report.html"));
     return files;

@@ -7,6 +7,7 @@
 #include "reports/json_support.h"
 #include "reports/map_file.h"
 #include "reports/partition_drawing.h"
+#include "reports/reduction_cost.h"
 #include "reports/result_json.h"
 #include "reports/wording.h"
 
@@ -77,6 +78,8 @@ json plan_json(const Study& study, const StudyResult& result) {
             {"gap_m", number(scene.gap)},
             {"bed_depth_m", number(scene.floor_depth())},
             {"dose_height_m", number(scene.dose_height)},
+            {"blade_thickness_m", number(scene.blade_thickness)},
+            {"periodic", scene.sides == Sides::periodic},
             {"footprint",
              {number(study.footprint.x_low + shift), number(study.footprint.x_high + shift),
               number(study.footprint.y_low), number(study.footprint.y_high)}},
@@ -142,14 +145,40 @@ std::string quoted(const std::string& word) {
     return out + "'";
 }
 
+/// One line that makes the result again. The seed stands at its end, wherever it was given.
+std::string command_of(const Study& study, const StudyResult& result,
+                       const std::vector<std::string>& called_with) {
+    std::string command = "gradwright design " + quoted(study.file);
+    for (std::size_t k = 0; k < called_with.size(); ++k) {
+        if (called_with[k] == "--set" && k + 1 < called_with.size() &&
+            called_with[k + 1].starts_with("run.seed=")) {
+            ++k;
+            continue;
+        }
+        command += " " + quoted(called_with[k]);
+    }
+    return command + " --seed " + std::to_string(result.seed) + " --out OUT";
+}
+
+constexpr std::size_t kPictureGrains = 60000;  // five pictures of 8 bytes a grain: 3.2 MB of base64
+
 }  // namespace
 
-json report_data(const Study& study, const StudyResult& result, const std::vector<std::string>& files) {
+std::vector<std::size_t> shown_instants(std::size_t count, std::size_t most) {
+    std::vector<std::size_t> out;
+    const std::size_t shown = std::min(count, most);
+    for (std::size_t k = 0; k < shown; ++k) out.push_back(shown == 1 ? 0 : k * (count - 1) / (shown - 1));
+    return out;
+}
+
+json report_data(const Study& study, const StudyResult& result, const std::vector<std::string>& files,
+                 const std::vector<std::string>& called_with) {
     const Wording words = wording(study, result);
     const Scene scene = scene_of(study, result.design, false, result.seed);
     json pictures = json::array();
-    if (!result.snapshots.empty()) pictures.push_back(grain_picture(result.snapshots.front(), scene));
-    if (result.snapshots.size() > 1) pictures.push_back(grain_picture(result.snapshots.back(), scene));
+    const std::vector<std::size_t> shown = shown_instants(result.snapshots.size());
+    for (const std::size_t k : shown)
+        pictures.push_back(grain_picture(result.snapshots[k], scene, kPictureGrains, kPictureGrains));
     return {{"format", "gradwright-report-1"},
             {"result", to_json(study, result, files)},
             {"words",
@@ -173,8 +202,8 @@ json report_data(const Study& study, const StudyResult& result, const std::vecto
             {"origin", origin_json(study, result)},
             {"pictures", pictures},
             {"speed", speed_json(result)},
-            {"command", "gradwright design " + quoted(study.file) + " --seed " + std::to_string(result.seed) +
-                            " --out OUT"},
+            {"reduction_cost", reduction_cost(study)},
+            {"command", command_of(study, result, called_with)},
             {"study_text", study.text}};
 }
 

@@ -24,8 +24,7 @@ const Grains = (() => {
     const ratio = Math.max(2, window.devicePixelRatio || 1); // crisp on paper too
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    canvas.style.width = width + "px";
-    canvas.style.height = height + "px";
+    canvas.style.width = width + "px"; // the height follows: paper is narrower than the screen it was drawn for
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", label);
     const pen = canvas.getContext("2d");

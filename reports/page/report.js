@@ -51,6 +51,7 @@
       const width = Math.floor(item.box.clientWidth);
       if (!width || width === item.width) continue;
       item.width = width;
+      if (item.keep) { item.keep(width); continue; }
       const made = [item.draw(width)].flat().filter(Boolean);
       item.box.replaceChildren(...made);
       for (const svg of item.box.querySelectorAll("svg"))
@@ -101,7 +102,7 @@
       h("div", { class: "card" }, h("h3", {}, "How sure"), h("p", { style: "margin:0 0 .5rem" }, words.sure),
         h("p", { class: "note", style: "margin:0" }, `Search ended: ${result.termination}${result.message ? ". " + result.message : ""}`)),
       h("div", { class: "card" }, h("h3", {}, "Compared on the same target"), comparison()))));
-  page.append(h("nav", { "aria-label": "sections" }, [["figures", "Gradation"], ["grains", "Bed and layer"], ["search", "Search"], ["inputs", "Inputs"], ["provenance", "Provenance"]].map(([id, name]) => h("a", { href: "#" + id }, name))));
+  page.append(h("nav", { "aria-label": "sections" }, [["figures", "Gradation"], pictures.length ? ["grains", "Bed and layer"] : null, data.sensitivity ? ["sensitivity", "Sensitivity"] : null, ["search", "Search"], ["inputs", "Inputs"], ["provenance", "Provenance"]].filter(Boolean).map(([id, name]) => h("a", { href: "#" + id }, name))));
 
   function comparison() {
     const row = (name, e) => e && e.status !== "not_run" ? [name, gi(e.misfit.value), gi(e.x_drift.value)] : null;
@@ -338,7 +339,7 @@
 
   // ---- grains --------------------------------------------------------------------------------------------------------
   if (pictures.length) {
-    const grains = pictures.map(Grains.unpack), L = plan.dispenser_length_m, W = plan.width_m, x0 = L + plan.land_m, P = plan.platform_length_m;
+    const last = pictures.length > 1 ? pictures.at(-1) : null, grains = [pictures[0], last].filter(Boolean).map(Grains.unpack), L = plan.dispenser_length_m, W = plan.width_m, x0 = L + plan.land_m, P = plan.platform_length_m;
     const reach = Math.min(4e-3, Math.max(L, P)); // longer pictures would have grains below a pixel
     const lands = [[-1, 0, 0], [L, x0, 0], [x0, x0 + P, -plan.gap_m], [x0 + P, 1e3, 0]];
     const r_max = pictures[0].radius_max, bed_floor = -plan.bed_depth_m - r_max;
@@ -347,12 +348,18 @@
     const depth = Math.max(plan.bed_depth_m, plan.gap_m) + 2 * r_max;
     const views = [
       ["w6", "Before: the dispenser from above", `Levelled bed, raised by the dose of ${mm(plan.dose_height_m)} mm; ${pictures[0].grains.toLocaleString("en-GB")} mobile grains in the run.`, (w) => Grains.plan(grains[0], w, [...before, 0, W], "#3a3f45", "the bed before the spread from above")],
-      pictures[1] ? ["w6", "After: the layer from above", "Grains on the platform when the blade has passed; grey: the substrate below.", (w) => Grains.plan(grains[1], w, [...after, 0, W], "#aab2bb", "the layer after the spread from above")] : null,
+      last ? ["w6", "After: the layer from above", "Grains on the platform when the blade has passed; grey: the substrate below.", (w) => Grains.plan(grains[1], w, [...after, 0, W], "#aab2bb", "the layer after the spread from above")] : null,
       ["w12", "Before: cut along the middle of the dispenser", "Cut at half the width, to scale, circles are true sections of grains. Dashed: z = 0, the blade's edge.", (w) => Grains.slice(grains[0], w, [...before, -depth, rise], W / 2, [[-1, 1e3, bed_floor]], "the bed before the spread, cut")],
-      pictures[1] ? ["w12", "After: cut along the middle of the platform", `Same scale. Grey: the substrate's mean plane, ${mm(plan.gap_m)} mm below the blade's edge.`, (w) => Grains.slice(grains[1], w, [...after, -depth, rise / 2], W / 2, lands, "the layer after the spread, cut")] : null];
+      last ? ["w12", "After: cut along the middle of the platform", `Same scale. Grey: the substrate's mean plane, ${mm(plan.gap_m)} mm below the blade's edge.`, (w) => Grains.slice(grains[1], w, [...after, -depth, rise / 2], W / 2, lands, "the layer after the spread, cut")] : null];
     section("grains", "Bed and layer",
       h("p", { class: "note", style: "margin:0" }, h("span", { class: "key A" }), `A, ${data.materials.A} `, h("span", { class: "key B", style: "margin-left:1em" }), `B, ${data.materials.B}`),
-      h("div", { class: "grid" }, views.filter(Boolean).map((v) => figure(...v))));
+      h("div", { class: "grid" }, spread_figure(), views.filter(Boolean).map((v) => figure(...v))));
+  }
+  // Its nodes stay, and it draws itself anew: only the width is handed on.
+  function spread_figure() {
+    const view = SpreadScene.build(pictures, plan, h), box = h("div", { class: "plot scene" }, view.nodes);
+    drawn.push({ box, title: "The spread in 3-D", width: 0, keep: view.redraw });
+    return h("figure", { class: "w12" }, h("h3", {}, "The spread in 3-D: before, during, after"), box, h("figcaption", {}, `Dispenser, land and platform to scale, from the first confirming spread. Grains: A blue, B orange, places to ${(1e6 * Math.max(...pictures.flatMap((p) => p.extent)) / 65535).toFixed(2)} µm. Before: the bed raised by the dose, and where the partition stood while it was filled (dark; drawn higher than the bed). During: the blade is see-through. ${plan.periodic ? "The two long sides are joined: what leaves one comes in at the other. " : ""}${view.note}`), result.files.includes("film.webp") ? h("p", { class: "note" }, "The same spread as an animated picture: ", h("a", { href: "film.webp" }, "film.webp"), ".") : null);
   }
 
   // ---- sensitivity: there when `gradwright sensitivity OUT` has run ---------------------------------------------------
@@ -415,9 +422,33 @@
       h("p", { class: "note" }, "Only grains whose forces were evaluated count. Times are those of an empty cache."),
       result.beds.length ? h("div", {}, h("h3", { style: "margin-top:1rem" }, "Settled beds"), table([R("packing"), R("coordination"), R("overlap / r"), R("speed / √(g d)"), R("carried weight")],
         result.beds.map((b) => [known(b.packing_fraction) ? b.packing_fraction.toFixed(3) : "–", known(b.mean_coordination) ? b.mean_coordination.toFixed(2) : "–", known(b.max_overlap_ratio) ? b.max_overlap_ratio.toFixed(4) : "–", known(b.speed_number) ? b.speed_number.toExponential(1) : "–", known(b.carried_weight_ratio) ? b.carried_weight_ratio.toFixed(4) : "–"]))) : null),
+    ...reduction_figures(),
     result.constraints?.length ? h("div", { class: "card w12" }, h("h3", {}, "Constraints and limits, as the design found stands to them"), table(["name", R("value"), R("at least"), R("at most"), R("slack"), "kept"],
       result.constraints.map((c) => { const show = (v) => (!known(v) ? "–" : c.unit === "m" ? `${mm(v)} mm` : c.unit === "rad" ? `${((v * 180) / Math.PI).toFixed(3)}°` : v.toFixed(4)); return [c.name, show(c.value), show(c.at_least), show(c.at_most), show(c.slack), c.kept ? "yes" : "NO"]; }))) : null,
     result.given_used.length ? h("div", { class: "card w12" }, h("h3", {}, "Options of the search, given and used"), table(["option", "given → used"], result.given_used.map((g) => [g.option, g.given_used]))) : null));
+
+  // What the reductions in use are known to cost; function declarations are hoisted above their use.
+  function reduction_figures() {
+    const cost = data.reduction_cost, names = result.reductions.length ? result.reductions.join(", ") : "none";
+    if (cost === undefined) return []; // data of earlier versions
+    if (!cost) return [h("div", { class: "card w12" }, h("h3", {}, "Speed against error"), h("p", { class: "note" }, `Reductions in use: ${names}. What this set gains and costs has not been measured. This spreads it beside finer ones and puts the table here:`), h("pre", { tabindex: "0" }, "gradwright tradeoff OUT --around study"))];
+    const levels = cost.levels, used = levels.find((l) => l.name === cost.used), allowed = cost.noise_allowed * used.noise_floor, kinds = ["in use", "finest", "another set"];
+    const kind = (l) => (l === used ? kinds[0] : l.name === "finest" ? kinds[1] : kinds[2]);
+    const draw = (width) => Plot.plot({
+      width, height: Math.max(240, Math.min(320, width * 0.55)), marginLeft: 52, marginRight: 16, marginBottom: 42, style, grid: true,
+      color: { domain: kinds, range: ["#111", "#6b7280", "#56b4e9"], legend: true }, symbol: { domain: kinds, range: ["star", "diamond2", "circle"] },
+      x: { type: "log", label: "speed-up against the finest level", domain: [0.85 * d3.min(levels, (l) => l.speed_up), 1.25 * d3.max(levels, (l) => l.speed_up)], ticks: width < 500 ? 4 : 8, tickFormat: String },
+      y: { label: "GI rms difference to the finest", domain: [0, 1.12 * d3.max(levels, (l) => Math.max(l.gi_rmse, cost.noise_allowed * l.noise_floor))] },
+      marks: [
+        Plot.ruleX(levels, { x: "speed_up", y1: 0, y2: (l) => cost.noise_allowed * l.noise_floor, stroke: "#b7c0c9", strokeWidth: 7, strokeOpacity: 0.6 }),
+        Plot.dot(levels, { x: "speed_up", y: "gi_rmse", fill: kind, symbol: kind, stroke: "#fff", sort: null, r: (l) => (l === used ? 8 : 5), title: (l) => `${l.name}: ${l.meaning}\nspeed-up ${l.speed_up.toFixed(2)}, GI rms ${gi(l.gi_rmse)}, noise floor ${gi(l.noise_floor)}` }), Plot.ruleY([0])],
+    });
+    const word = (l) => (l === used ? "in use" : l.name === "finest" ? "" : !l.within_noise ? "beyond the noise" : !l.overlap_rule_kept ? "overlaps too large" : "free");
+    const said = `Reductions in use: ${names}. On ${cost.own ? "this study" : `another study (${cost.study}; ${cost.source})`} this set is ${used.speed_up.toFixed(1)} times as fast as the finest level, and its GI(y) differs from the finest's by ${gi(used.gi_rmse)} rms, ${used.gi_rmse <= allowed ? "within" : "beyond"} ${cost.noise_allowed} noise floors of ${gi(used.noise_floor)} each; its largest overlap is ${(100 * used.max_overlap_ratio).toFixed(1)} % of a radius${used.overlap_rule_kept ? "" : ", where 3 % is the rule"}.`;
+    return [figure("w6", "Speed against error of the reductions", `Grey bars: ${cost.noise_allowed} noise floors; a mark within its bar cannot be told from the finest with ${cost.seeds} beds.`, draw),
+      h("div", { class: "card w6" }, h("h3", {}, "What the reductions in use cost"), h("p", {}, said), table(["level", R("speed-up"), R("GI rms"), R("floor"), R("packing"), R("overlap / r"), ""],
+        levels.map((l) => [l.name, l.speed_up.toFixed(2), gi(l.gi_rmse), gi(l.noise_floor), `${(100 * l.packing_error).toFixed(1)} %`, `${(100 * l.max_overlap_ratio).toFixed(1)} %`, word(l)])), h("p", { class: "note" }, cost.own ? "Measured by" : "Measured by the command below. For this study itself: gradwright tradeoff OUT --around study."), h("pre", { tabindex: "0" }, cost.command))];
+  }
 
   // ---- inputs and provenance -----------------------------------------------------------------------------------------
   const body = h("tbody");
@@ -439,7 +470,12 @@
     h("div", { class: "card w6" }, h("h3", {}, "Make it again"), h("pre", { tabindex: "0" }, data.command), h("p", { class: "note" }, "The same study, seed and program give the same numbers on any number of threads."),
       result.files.length ? h("div", {}, h("h3", {}, "Files beside this page"), h("p", { class: "note", style: "margin:0" }, result.files.join("  ·  "))) : null),
     h("div", { class: "card w12" }, h("h3", {}, "Study file, as written"), h("pre", { tabindex: "0" }, data.study_text))));
-  document.body.append(h("footer", {}, "Figures drawn with Observable Plot 0.6 and D3 7 (ISC licence), contained in this page. Colours after Okabe and Ito. Lengths in mm on this page, in m in the JSON and HDF5 files."));
+  document.body.append(h("footer", {}, "Figures drawn with Observable Plot 0.6 and D3 7 (ISC licence), the grains in 3-D with three.js (MIT licence), contained in this page. Colours after Okabe and Ito. Lengths in mm on this page, in m in the JSON and HDF5 files."));
+
+  // Folded numbers would be lost on paper.
+  const unfolded = [];
+  window.addEventListener("beforeprint", () => { for (const d of document.querySelectorAll("details:not([open])")) { d.open = true; unfolded.push(d); } });
+  window.addEventListener("afterprint", () => { for (const d of unfolded.splice(0)) d.open = false; });
 
   redraw();
   let waiting = 0;

@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
 #include <regex>
 
 #include "reports/grain_picture.h"
 #include "reports/html_report.h"
+#include "reports/reduction_cost.h"
 #include "reports/report_data.h"
 #include "reports/summary.h"
 #include "reports/wording.h"
@@ -65,6 +68,17 @@ TEST(Report, command_quotes_a_file_name_with_blanks) {
                 HasSubstr("'my studies/it'\\''s.toml'"));
 }
 
+TEST(Report, command_says_all_that_decides_the_numbers) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    result.seed = 7;
+    const std::vector<std::string> words = {
+        "--strategy", "bobyqa", "--set", "process.layer_thickness=\"50 um\"", "--set", "run.seed=7"};
+    EXPECT_EQ(report_data(study, result, {}, words)["command"],
+              "gradwright design examples/01_linear_coupon.toml --strategy bobyqa --set "
+              "'process.layer_thickness=\"50 um\"' --seed 7 --out OUT");
+}
+
 TEST(Report, origin_shares_sum_to_one_and_w_ends_at_one) {
     const Study study = fixture::study();
     const auto origin = report_data(study, fixture::result(study))["origin"];
@@ -73,6 +87,50 @@ TEST(Report, origin_shares_sum_to_one_and_w_ends_at_one) {
     EXPECT_NEAR(sum, 1, 1e-3);  // rounded to 1e-7 in some hundred cells
     EXPECT_DOUBLE_EQ(origin["cumulative"].back().get<double>(), 1);
     EXPECT_DOUBLE_EQ(origin["cumulative"].front().get<double>(), 0);
+}
+
+TEST(Report, knows_what_the_reductions_in_use_cost) {
+    // the set of the first example, as docs/speed-against-error.md measured it whole
+    Study study = fixture::study();
+    study.reductions = {"early_stop", "fines_cut", "shallow_bed", "strip_map"};
+    study.scene.softening = 1e-4;
+    study.scene.rayleigh_fraction = 0.3;
+    const auto cost = report_data(study, fixture::result(study))["reduction_cost"];
+    ASSERT_TRUE(cost.is_object());
+    EXPECT_EQ(cost["used"], "study");
+    EXPECT_EQ(cost["own"], false);
+    std::ifstream file(std::string(GRADWRIGHT_SOURCE_DIR) + "/docs/speed-against-error.md");
+    const std::string page((std::istreambuf_iterator<char>(file)), {});
+    const std::string reduced = page.substr(page.find("<!-- reduced: begin"));
+    for (const auto& level : cost["levels"]) {
+        if (level["name"] != "study") continue;
+        char row[64];
+        std::snprintf(row, sizeof row, "| %.2f | %.3f | %.3f |", level["speed_up"].get<double>(),
+                      level["gi_rmse"].get<double>(), level["noise_floor"].get<double>());
+        EXPECT_THAT(reduced, HasSubstr(row));
+    }
+    // one setting aside, and nothing is known
+    study.scene.rayleigh_fraction = 0.31;
+    EXPECT_TRUE(reduction_cost(study).is_null());
+    study.scene.rayleigh_fraction = 0.3;
+    study.reductions.pop_back();
+    EXPECT_TRUE(reduction_cost(study).is_null());
+}
+
+TEST(Report, the_study_s_own_tradeoff_stands_for_it) {
+    nlohmann::json level = {{"name", "study"}, {"gi_rmse", 0.02}, {"beds", nlohmann::json::array()}};
+    nlohmann::json missing = {{"name", "finest"}, {"gi_rmse", nullptr}};
+    nlohmann::json tradeoff = {{"study", "s"},
+                               {"seeds", 3},
+                               {"noise_allowed", 2},
+                               {"provenance", {{"host", {{"isa", "AVX2"}}}}},
+                               {"levels", {missing, level}}};
+    const auto cost = reduction_cost(tradeoff, "gradwright tradeoff OUT");
+    EXPECT_EQ(cost["own"], true);
+    EXPECT_EQ(cost["levels"].size(), 1u);
+    EXPECT_FALSE(cost["levels"][0].contains("beds"));
+    tradeoff["levels"] = {missing};
+    EXPECT_TRUE(reduction_cost(tradeoff, "").is_null());
 }
 
 TEST(GrainPicture, base64_matches_rfc_4648) {
@@ -107,6 +165,34 @@ TEST(GrainPicture, a_big_bed_keeps_its_surface_and_its_cut) {
     EXPECT_LT(few["shown"].get<int>(), all["shown"].get<int>());
     EXPECT_GT(few["shown"].get<int>(), 1000);  // 84 x 42 columns of grains are seen from above
     EXPECT_EQ(few["data"].get<std::string>().size(), (few["shown"].get<std::size_t>() * 8 + 2) / 3 * 4);
+}
+
+TEST(GrainPicture, no_bed_takes_more_than_its_share_of_the_page) {
+    const Study study = fixture::study();
+    const StudyResult result = fixture::result(study);
+    const auto few = grain_picture(result.snapshots[0], study.scene, 1000, 500);
+    EXPECT_EQ(few["shown"], 500);
+    EXPECT_EQ(few["grains"], result.snapshots[0].x.size());
+    // evenly over the heights: the lowest of the surface stays, and something near the top
+    const auto all = grain_picture(result.snapshots[0], study.scene, 1000);
+    EXPECT_EQ(few["origin"][2], all["origin"][2]);
+    EXPECT_GT(few["extent"][2].get<double>(), 0.9 * all["extent"][2].get<double>());
+}
+
+TEST(Report, shows_the_first_and_the_last_instant_and_some_between) {
+    EXPECT_THAT(shown_instants(0), testing::IsEmpty());
+    EXPECT_THAT(shown_instants(1), testing::ElementsAre(0));
+    EXPECT_THAT(shown_instants(2), testing::ElementsAre(0, 1));
+    EXPECT_THAT(shown_instants(5), testing::ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(shown_instants(61), testing::ElementsAre(0, 15, 30, 45, 60));
+}
+
+TEST(Report, carries_the_3_d_library_only_where_there_are_grains) {
+    const Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    EXPECT_NE(report_html(report_data(study, result)).find("var THREE="), std::string::npos);
+    result.snapshots.clear();
+    EXPECT_EQ(report_html(report_data(study, result)).find("var THREE="), std::string::npos);
 }
 
 TEST(Wording, verdict_names_the_margin) {
