@@ -284,9 +284,10 @@ void add_design(CLI::App& app, Call& call) {
         ->check(CLI::Range(1, 1000000));
     verb->add_flag(
         "--film", options->film,
-        fmt::format("Also OUT/film.webp, an animated picture of the first confirming spread, cut along x and "
-                    "from above: {} instants, a few MB; OUT/spreads takes some 2 kB a grain and spread more",
-                    kFilmInstants));
+        fmt::format(
+            "Also OUT/film.webp, an animated picture of the first confirming spread, cut along x and "
+            "from above: up to {} instants, a few MB; OUT/spreads takes some 2 kB a grain and spread more",
+            kFilmInstants));
     verb->add_flag("--no-spec", options->no_spec, "Leave out the hand-over (OUT/spec)");
     add_study_options(*verb, call.options);
     add_out_options(*verb, call.options);

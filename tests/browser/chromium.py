@@ -111,12 +111,16 @@ class Chromium:
         self.send("Input.dispatchKeyEvent", type="keyUp", **common)
 
     def picture(self, path, whole=True):
-        options = {"captureBeyondViewport": True} if whole else {}
-        if whole:
-            size = self.send("Page.getLayoutMetrics")["cssContentSize"]
-            options["clip"] = {"x": 0, "y": 0, "width": size["width"], "height": min(size["height"], 16000), "scale": 1}
-        data = self.send("Page.captureScreenshot", format="png", **options)["data"]
-        pathlib.Path(path).write_bytes(base64.b64decode(data))
+        """A PNG of the window, or of the whole page: in parts of 8000 px, `name_2.png` and on, since a surface ends at 8192."""
+        path = pathlib.Path(path)
+        if not whole:
+            path.write_bytes(base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"]))
+            return
+        size = self.send("Page.getLayoutMetrics")["cssContentSize"]
+        for part, top in enumerate(range(0, int(size["height"]), 8000)):
+            clip = {"x": 0, "y": top, "width": size["width"], "height": min(size["height"] - top, 8000), "scale": 1}
+            data = self.send("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)["data"]
+            (path if part == 0 else path.with_stem(f"{path.stem}_{part + 1}")).write_bytes(base64.b64decode(data))
 
     def paper(self, path):
         data = self.send("Page.printToPDF", printBackground=False, preferCSSPageSize=True, paperWidth=8.27, paperHeight=11.69)["data"]
