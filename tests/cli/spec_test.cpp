@@ -44,6 +44,10 @@ TEST_F(SpecVerb, writes_every_file_and_its_json_is_the_file) {
     EXPECT_EQ(outcome.out, content(spec() / "spec.json"));
     const json object = json::parse(outcome.out);
     EXPECT_EQ(object["verdict"], "met");
+    EXPECT_EQ(object["missing"].size(), step_available() ? 0u : 1u);
+    if (!step_available()) {
+        EXPECT_THAT(outcome.err, HasSubstr("partition.step was not written"));
+    }
     EXPECT_TRUE(object["buildable"].get<bool>());
     for (const json& name : object["files"])
         EXPECT_TRUE(std::filesystem::exists(spec() / name.get<std::string>())) << name;

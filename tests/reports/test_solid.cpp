@@ -140,10 +140,15 @@ TEST(Marks, touch_nowhere_and_stay_above_the_rim_within_their_faces) {
 
 #if GRADWRIGHT_TEST_STEP
 TEST(Step, reads_back_with_the_closed_forms_volume_box_and_faces) {
-    for (const auto& [s, f] : every_kind())
+    const std::vector<Built> kinds = every_kind();
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind)
         for (const StepSchema schema : {StepSchema::ap214, StepSchema::ap242}) {
-            if (schema == StepSchema::ap242 && s.build.tabs) continue;  // seconds each
-            const HandOver over = hand_over(s, f);
+            // engraved: straight, bent and printed, with tabs; a thousand faces each cost seconds
+            const bool marked = kind == 1 || kind == 5 || kind == 9;
+            if (schema == StepSchema::ap242 && marked) continue;
+            const auto& [s, f] = kinds[kind];
+            HandOver over = hand_over(s, f);
+            if (!marked) over.plates = plates_of(s, f.design);
             const std::string path = testing::TempDir() + "gradwright_partition.step";
             write_step(over.plates, {over.id, "1.4301 0.5 mm", over.first_line, "owner", "creator"}, schema,
                        path);
