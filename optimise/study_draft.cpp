@@ -119,7 +119,7 @@ void write_process(Sheet& sheet, const DraftOptions& options, StudyDraft& draft)
     sheet.remark(
         "of every pair of grains and of the walls; docs/bulk.md shows what an angle of repose says of them");
     sheet.line("static_friction = 0.64", "measure this");
-    sheet.line("restitution = 0.5", "measure this: it hardly matters in a slow heap");
+    sheet.line("restitution = 0.5", "measure this");
     sheet.line("rolling_friction = 0.1", "measure this");
     sheet.line("work_of_adhesion = \"0.02 J/m2\"", "measure this");
     for (const char* key : {"static_friction", "restitution", "rolling_friction", "work_of_adhesion"})

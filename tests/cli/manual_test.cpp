@@ -49,7 +49,8 @@ class Manual : public CalledProgram {
     }
     /// COMPREPLY after the words, the last of them under the cursor, as bash's own `complete -F` is called.
     std::vector<std::string> completed(const std::vector<std::string>& words) const {
-        std::ofstream(folder_ / "script") << run({"completion", "bash"}).out;
+        if (!fs::exists(folder_ / "script"))
+            std::ofstream(folder_ / "script") << run({"completion", "bash"}).out;
         std::string text = "source ../script\nCOMP_WORDS=(";
         for (const std::string& word : words) text += quoted(word) + " ";
         text +=
