@@ -88,19 +88,47 @@ std::optional<GrainSizes> sizes_of(const std::string& option, const std::string&
     return GrainSizes{values[0], values[1], values[2]};
 }
 
+/// All at once, each with its mend; the first one's exit code.
+void refuse_all(const std::vector<Failure>& problems) {
+    if (problems.empty()) return;
+    if (problems.size() == 1) throw problems.front();
+    std::string text = fmt::format("{} problems:", problems.size());
+    for (const Failure& problem : problems) {
+        text += "\n  " + problem.message;
+        if (!problem.mend.empty()) text += "\n    " + problem.mend;
+    }
+    throw Failure(problems.front().code, text);
+}
+
 ExitCode run_init(const InitOptions& options, const CommonOptions& common) {
     DraftOptions draft;
-    draft.machine = machine_of(options);
+    std::vector<Failure> problems;
+    const auto tried = [&problems](const auto& step) {
+        try {
+            step();
+        } catch (const Failure& failure) {
+            problems.push_back(failure);
+        }
+    };
+    tried([&] { draft.machine = machine_of(options); });
     const std::vector<std::string> powders = powder_names();
     for (const int i : {0, 1}) {
-        check_name(i == 0 ? "--powder-a" : "--powder-b", options.powder[i], "material of the table", powders);
-        draft.size[i] = sizes_of(i == 0 ? "--size-a" : "--size-b", options.size[i]);
+        tried([&] {
+            check_name(i == 0 ? "--powder-a" : "--powder-b", options.powder[i], "material of the table",
+                       powders);
+        });
+        tried([&] { draft.size[i] = sizes_of(i == 0 ? "--size-a" : "--size-b", options.size[i]); });
     }
     draft.powder = options.powder;
-    check_name("--target", options.target, "shape of a target that init writes",
-               {kDraftTargets.begin(), kDraftTargets.end()});
+    tried([&] {
+        check_name("--target", options.target, "shape of a target that init writes",
+                   {kDraftTargets.begin(), kDraftTargets.end()});
+    });
     draft.target = options.target;
-    if (!options.layer.empty()) draft.layer_thickness = length_of("--layer", options.layer);
+    tried([&] {
+        if (!options.layer.empty()) draft.layer_thickness = length_of("--layer", options.layer);
+    });
+    refuse_all(problems);
     const bool to_stdout = options.file == "-";
     draft.file = to_stdout ? "" : options.file;
     draft.name = options.name;

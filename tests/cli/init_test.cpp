@@ -196,6 +196,16 @@ TEST_F(Init, refuses_unknown_and_missing_names_with_the_list_of_valid_ones) {
     EXPECT_TRUE(wrote_nothing());
 }
 
+TEST_F(Init, tells_all_that_is_wrong_with_its_options_at_once) {
+    const Outcome outcome = run({"init", "my.toml", "--machine", "eos-m920", "--powder-a", "IN781",
+                                 "--powder-b", "316L", "--size-b", "55 um, 35 um, 20 um", "--layer", "40"});
+    EXPECT_EQ(outcome.code, 2);
+    for (const char* said :
+         {"4 problems", "did you mean 'eos-m290'?", "--powder-a 'IN781'", "--size-b", "--layer '40'"})
+        EXPECT_THAT(outcome.err, HasSubstr(said));
+    EXPECT_TRUE(wrote_nothing());
+}
+
 TEST_F(Init, names_a_machine_file_relative_to_the_study) {
     fs::create_directories(folder_ / "work" / "rigs");
     fs::create_directories(folder_ / "work" / "studies");
