@@ -18,8 +18,20 @@ constexpr CairoSheet::Colour kA{0, 0.447, 0.698}, kB{0.604, 0.416, 0}, kTintA{0.
 
 void draw_fill_sketch(CairoSheet& sheet, const Study& study, const HandOver& over, const ViewBox& box) {
     const double length = study.scene.dispenser_length, width = study.dispenser_width;
-    const double scale = std::min((box.right - box.left - 44) / length, (box.bottom - box.top - 12) / width);
-    const double x0 = 0.5 * (box.left + box.right - length * scale), y0 = box.bottom - 1;
+    // slots in thick walls: a plate may stand out further than the dispenser is wide
+    double low = 0, high = width, left = 0, right = length;
+    for (const Plate& plate : over.plates)
+        for (const PlanPoint& p : plate.corners) {
+            low = std::min(low, p.y - plate.thickness);
+            high = std::max(high, p.y + plate.thickness);
+            left = std::min(left, p.x);
+            right = std::max(right, p.x);
+        }
+    const double label = low < 0 ? 6 : 0;  // [mm] a plate's letter below the picture
+    const double scale = std::min((box.right - box.left - 44) / (right - left),
+                                  (box.bottom - box.top - 12 - label) / (high - low));
+    const double x0 = 0.5 * (box.left + box.right - (left + right) * scale),
+                 y0 = box.bottom - 1 - label + low * scale;
     const auto at = [&](PlanPoint p) { return SheetPoint{x0 + p.x * scale, y0 - p.y * scale}; };
     const auto outlines = chamber_outlines(over.partition, length, width);
     for (const std::size_t side : {0u, 1u}) {
@@ -51,9 +63,10 @@ void draw_fill_sketch(CairoSheet& sheet, const Study& study, const HandOver& ove
                        {.size = 2.4, .anchor = Anchor::middle, .colour = colour});
     }
     const SheetPoint from = at({0.2 * length, width}), to = at({0.8 * length, width});
-    sheet.line({from.x, from.y - 3}, {to.x, to.y - 3}, {.width = 0.6});
-    sheet.tip({to.x + 3, to.y - 3}, 1, 0, 4);
-    sheet.text({0.5 * (from.x + to.x), from.y - 4.5}, "spreading direction",
+    const double above = from.y - (high - width) * scale;
+    sheet.line({from.x, above - 3}, {to.x, above - 3}, {.width = 0.6});
+    sheet.tip({to.x + 3, above - 3}, 1, 0, 4);
+    sheet.text({0.5 * (from.x + to.x), above - 4.5}, "spreading direction",
                {.size = 2.5, .anchor = Anchor::middle});
     sheet.text({at({0, 0}).x - 2, y0 - 1}, "rear",
                {.size = 2.5, .anchor = Anchor::end, .colour = kSheetGrey});
