@@ -14,7 +14,11 @@ namespace {
 
 constexpr int kResamples = 200;            // bootstrap resamples of a quoted number
 constexpr double kLabelsMayStray = 0.005;  // share of the laid solid whose label is not its origin's side
-constexpr double kSignificance = 0.01;     // of the test that sends a spread back to its plain bins
+/// The same where each powder is read by its own grains. Sizes of their own are given to a packed bed, which
+/// then settles anew: some grains at the partition cross it (1 % of the solid with 30 beside 50 um), and
+/// count for nothing.
+constexpr double kPowdersMayStray = 0.03;
+constexpr double kSignificance = 0.01;  // of the test that sends a spread back to its plain bins
 
 /// Share of the laid solid that carries a powder which its side of the partition does not hold.
 double stray_labels(const Layer& layer, const PartitionCurve& partition, const ChamberFill& fill) {
@@ -49,7 +53,7 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     // a slot that collapses blurs the sides, which a premix would not show
     const bool alike = moves_alike(study_);
     if (!layer.periodic || !fill.level() || !(fill.pure() || (alike && study_.scene.plate_thickness == 0)) ||
-        !(stray_labels(layer, design.partition, fill) <= kLabelsMayStray))
+        !(stray_labels(layer, design.partition, fill) <= (alike ? kLabelsMayStray : kPowdersMayStray)))
         return;
 
     Evaluation every;

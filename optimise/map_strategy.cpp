@@ -93,7 +93,7 @@ class MapStrategy {
             // unlike powders: the map is a guess, and may agree with a poor spread by its own noise alone
             const bool borderline =
                 round.distance() > kBorderline &&
-                (!alike_ || (round.verdict == Verdict::undecided && full_spreads_are_maps(round)));
+                (!like_ || (round.verdict == Verdict::undecided && full_spreads_are_maps(round)));
             if (study_.design_space.partition_free &&
                 (profile_contradicts || drift_contradicts || borderline)) {
                 run_.enter("correct");
@@ -212,7 +212,7 @@ class MapStrategy {
     /// is a strip; two spreads are left for confirmations in any case. Where they do not, the design is made
     /// anew with each powder as on its own strip. False when that gave none.
     bool hold_powders_apart() {
-        if (alike_ || run_.spreads_left() <= kReserve) return true;
+        if (like_ || run_.spreads_left() <= kReserve) return true;
         run_.enter("gate");
         const Evaluation all_b = run_.map.with_powder_b(predicted_.design);
         run_.record("gate", all_b, "the same partition on a strip of powder B alone");
@@ -223,8 +223,7 @@ class MapStrategy {
         }
         const PowderGate gate = powder_gate(predicted_, all_b, run_.result.weight);
         run_.result.powder_gate = gate;
-        alike_ = gate.passes;
-        if (alike_) return true;
+        if (gate.passes) return true;
         run_.warn(
             {fmt::format("powders A and B move differently: on a strip of B alone GI differs by {:.3f} rms "
                          "(noise {:.3f}, p = {:.2g}; drift p = {:.2g}). The map is a first guess; only "
@@ -245,14 +244,14 @@ class MapStrategy {
     /// Powders that move each in its own way, between periodic sides: a spread with both tells how each moves
     /// beside the other.
     bool full_spreads_tell_powders(const ConfirmedDesign& round) const {
-        return !alike_ && chambers_are_plain() && !round.layers.empty() && round.layers.front().periodic &&
+        return !like_ && chambers_are_plain() && !round.layers.empty() && round.layers.front().periodic &&
                round.layers.front().labelled;
     }
 
     /// Powders that move alike between periodic sides, level chambers: a spread's origins tell what a strip's
     /// do.
     bool full_spreads_are_maps(const ConfirmedDesign& round) const {
-        return alike_ && chamber_fill(study_, motion_).level() && !round.layers.empty() &&
+        return like_ && chamber_fill(study_, motion_).level() && !round.layers.empty() &&
                round.layers.front().periodic;
     }
 
@@ -348,7 +347,9 @@ class MapStrategy {
     Evaluation predicted_;  ///< of the design in force, on the map
     Correction correction_;
     std::string fit_message_;
-    bool alike_ = moves_alike(study_);
+    /// By what they are. A gate that passes says that one noisy strip found no difference: the strips of A go
+    /// on being the first guess, but what spreads with both say is read powder by powder all the same.
+    const bool like_ = moves_alike(study_);
 };
 
 }  // namespace

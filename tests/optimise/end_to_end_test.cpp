@@ -161,7 +161,6 @@ TEST(EndToEnd, a_light_powder_shows_in_the_confirmation_and_not_in_the_map) {
     for (const int bed : {0, 1, 2}) {
         light = evaluate_once(unlike, along, Fidelity::full, confirmation_seed(like.seed, bed), options);
         ASSERT_TRUE(light.health.ok()) << light.health.reason;
-        EXPECT_FALSE(light.every_grain);
         beds.push_back(light.profile);
     }
     light.profile = mean_profile(beds);
