@@ -36,6 +36,9 @@ nlohmann::json bench_json(const BenchResult& result) {
                          {"stages", stages},
                          {"bytes_per_grain", number(one.bytes_per_grain)},
                          {"contacts_per_grain", number(one.contacts_per_grain)},
+                         {"steps_per_near_list", number(one.steps_per_near_list)},
+                         {"steps_per_candidate_list", number(one.steps_per_candidate_list)},
+                         {"near_pairs_per_grain", number(one.near_pairs_per_grain)},
                          {"state_hash", one.state_hash}});
     }
     return {{"host", {{"cores", result.cores}, {"isa", result.isa}}}, {"cases", cases}};

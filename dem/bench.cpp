@@ -49,6 +49,11 @@ BenchCase timed(Engine& engine, const std::string& name, int threads, long steps
                 {"candidates", engine.times().candidates - before.candidates}};
     c.bytes_per_grain = engine.memory_bytes() / static_cast<double>(engine.state().size());
     c.contacts_per_grain = static_cast<double>(engine.contacts()) / static_cast<double>(engine.mobile());
+    c.near_pairs_per_grain = static_cast<double>(engine.near_pairs()) / static_cast<double>(engine.mobile());
+    c.steps_per_near_list =
+        static_cast<double>(steps) / static_cast<double>(engine.times().near_lists - before.near_lists);
+    c.steps_per_candidate_list = static_cast<double>(steps) /
+                                 static_cast<double>(engine.times().candidate_lists - before.candidate_lists);
     c.state_hash = engine.state_hash();
     if (!engine.failed().empty()) throw std::runtime_error("bench: " + name + ": " + engine.failed());
     return c;

@@ -32,6 +32,8 @@ struct BenchCase {
     std::map<std::string, double> stages;  ///< seconds: law, grains, near_list, candidates
     double bytes_per_grain = 0;
     double contacts_per_grain = 0;
+    double steps_per_near_list = 0, steps_per_candidate_list = 0;  ///< infinite: none was made
+    double near_pairs_per_grain = 0;  ///< pairs that the law sees, touching or not
     std::string state_hash;
 };
 

@@ -95,12 +95,14 @@ void Engine::rebuild_candidates() {
         ++first[cell_index[i] + 1];
     }
     std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::int32_t> order(first.back()), cursor(first.begin(), first.end() - 1);
+    std::vector<std::int32_t> order(first.back()), sorted_cell(first.back()),
+        cursor(first.begin(), first.end() - 1);
     new_index_.assign(old_count, -1);
     for (std::size_t i = 0; i < old_count; ++i) {
         if (cell_index[i] < 0) continue;
         const std::int32_t at = cursor[cell_index[i]]++;
         order[at] = static_cast<std::int32_t>(i);
+        sorted_cell[at] = cell_index[i];
         new_index_[i] = at;
     }
     s.for_each_array([&](auto& array) { permute(array, order); });
@@ -110,22 +112,45 @@ void Engine::rebuild_candidates() {
     built_z_ = s.z;
     choose_wide_reach();
 
-    // Candidates j > i of every grain, block by block.
+    // Candidates j > i of every grain, block by block: the grains of a row of cells stand one after the
+    // other, so that a vector's width of them is tested at once. In float, from the lowest corner and within
+    // one period; the cut is longer by what that can be wrong, two roundings a coordinate and one a sum.
+    using F = WideFloat;
+    constexpr int kLanes = Lane<F>::kWidth;
+    const double extent = std::max({hi_x - lo_x, periodic ? span_y : hi_y - lo_y, hi_z - lo_z, cell});
+    const float margin = static_cast<float>(6 * 0x1p-24 * extent + 1e-6 * cell);
+    struct Near {
+        AlignedVector<float> x, y, z, cut;
+    } place;
+    for (auto* array : {&place.x, &place.y, &place.z, &place.cut}) array->resize(n + kLanes);
     const std::size_t blocks = (n + kBlock - 1) / kBlock;
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::size_t i = 0; i < n; ++i) {
+        double y = s.y[i] - (periodic ? 0 : lo_y);
+        if (periodic) y -= span_y * std::floor(y / span_y);
+        place.x[i] = static_cast<float>(s.x[i] - lo_x);
+        place.y[i] = static_cast<float>(y);
+        place.z[i] = static_cast<float>(s.z[i] - lo_z);
+        place.cut[i] = static_cast<float>(s.radius[i] + wide_reach_[i]) + 0.5f * margin;
+    }
     std::vector<std::vector<std::int32_t>> found(blocks);
     candidate_first_.assign(n + 1, 0);
+    const float wrap_y = periodic ? static_cast<float>(span_y) : 0, wrap_x = static_cast<float>(period_x),
+                wrap_z = static_cast<float>(period_z);
+    const float inverse_y = periodic ? 1 / wrap_y : 0, inverse_x = period_x > 0 ? 1 / wrap_x : 0,
+                inverse_z = period_z > 0 ? 1 / wrap_z : 0;
+    const bool small_gas = period_x > 0 || period_z > 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
     for (std::size_t block = 0; block < blocks; ++block) {
         auto& list = found[block];
-        list.reserve(kBlock * 10);
+        std::size_t count = 0;
         for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
-            const std::size_t before = list.size();
-            const int cx = std::clamp(static_cast<int>((s.x[i] - lo_x) / cell), 0, nx - 1);
-            double y = s.y[i] - (periodic ? 0 : lo_y);
-            if (periodic) y -= span_y * std::floor(y / span_y);
-            const int cy = std::clamp(static_cast<int>(y * inv_y), 0, ny - 1);
-            const int cz = std::clamp(static_cast<int>((s.z[i] - lo_z) / cell), 0, nz - 1);
-            const double reach = s.radius[i] + wide_reach_[i];
+            const std::size_t before = count;
+            const std::int32_t cell_number = sorted_cell[i];
+            const int cz = cell_number % nz, cy = cell_number / nz % ny, cx = cell_number / nz / ny;
+            const bool fixed = s.fixed[i];
+            const F xi = F{} + place.x[i], yi = F{} + place.y[i], zi = F{} + place.z[i],
+                    cut_i = F{} + place.cut[i];
             int rows[3], row_count = 0;
             for (int dy = -1; dy <= 1; ++dy) {
                 int row = cy + dy;
@@ -135,26 +160,37 @@ void Engine::rebuild_candidates() {
                 for (int k = 0; k < row_count; ++k) known = known || rows[k] == row;
                 if (!known) rows[row_count++] = row;
             }
-            for (int ix = std::max(cx - 1, 0); ix <= std::min(cx + 1, nx - 1); ++ix) {
+            for (int ix = cx; ix <= std::min(cx + 1, nx - 1); ++ix) {
                 for (int k = 0; k < row_count; ++k) {
                     const std::size_t base = (static_cast<std::size_t>(ix) * ny + rows[k]) * nz;
-                    const std::int32_t from = first[base + std::max(cz - 1, 0)],
+                    const std::int32_t from = std::max<std::int32_t>(first[base + std::max(cz - 1, 0)],
+                                                                     static_cast<std::int32_t>(i) + 1),
                                        to = first[base + std::min(cz + 1, nz - 1) + 1];
-                    for (std::int32_t j = std::max<std::int32_t>(from, static_cast<std::int32_t>(i) + 1);
-                         j < to; ++j) {
-                        double dy = s.y[i] - s.y[j];
-                        if (periodic) dy -= span_y * std::nearbyint(dy / span_y);
-                        double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
-                        if (period_x > 0) dx -= period_x * std::nearbyint(dx / period_x);
-                        if (period_z > 0) dz -= period_z * std::nearbyint(dz / period_z);
-                        const double cut = reach + s.radius[j] + wide_reach_[j];
-                        if (dx * dx + dy * dy + dz * dz < cut * cut && !(s.fixed[i] && s.fixed[j]))
-                            list.push_back(j);
+                    if (from >= to) continue;
+                    if (list.size() < count + static_cast<std::size_t>(to - from))
+                        list.resize(2 * list.size() + static_cast<std::size_t>(to - from) + kBlock * 10);
+                    for (std::int32_t j = from; j < to; j += kLanes) {
+                        F dx = xi - load_unaligned<F>(&place.x[j]), dz = zi - load_unaligned<F>(&place.z[j]);
+                        F dy = yi - load_unaligned<F>(&place.y[j]);
+                        dy -= wrap_y * nearest_whole(dy * inverse_y);
+                        if (small_gas) {
+                            dx -= wrap_x * nearest_whole(dx * inverse_x);
+                            dz -= wrap_z * nearest_whole(dz * inverse_z);
+                        }
+                        const F cut = cut_i + load_unaligned<F>(&place.cut[j]);
+                        std::uint32_t bits = bits_where_less(dx * dx + dy * dy + dz * dz, cut * cut);
+                        if (to - j < kLanes) bits &= (1u << (to - j)) - 1;
+                        for (; bits != 0; bits &= bits - 1) {
+                            const std::int32_t other = j + __builtin_ctz(bits);
+                            list[count] = other;
+                            count += !(fixed && s.fixed[other]);
+                        }
                     }
                 }
             }
-            candidate_first_[i + 1] = static_cast<std::int32_t>(list.size() - before);
+            candidate_first_[i + 1] = static_cast<std::int32_t>(count - before);
         }
+        list.resize(count);
     }
     std::partial_sum(candidate_first_.begin(), candidate_first_.end(), candidate_first_.begin());
     candidate_.resize(candidate_first_[n]);
@@ -171,15 +207,17 @@ void Engine::rebuild_candidates() {
     find_reachable_bodies();
     frame_shift_ = {};
     body_way_ = 0;
+    reverse_first_.clear();
+}
 
-    // Reverse list: for every grain the candidate numbers in which it is the second, ascending.
-    reverse_first_.assign(n + 1, 0);
+// Only who may fall asleep is asked by its neighbours of lower number.
+void Engine::find_reverse_candidates() {
+    reverse_first_.assign(state_.size() + 1, 0);
     for (const std::int32_t j : candidate_) ++reverse_first_[j + 1];
     std::partial_sum(reverse_first_.begin(), reverse_first_.end(), reverse_first_.begin());
     reverse_.resize(candidate_.size());
     std::vector<std::int32_t> at(reverse_first_.begin(), reverse_first_.end() - 1);
-    for (std::size_t c = 0; c < candidate_.size(); ++c)
-        reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(c);
+    for (std::size_t c = 0; c < candidate_.size(); ++c) reverse_[at[candidate_[c]]++] = candidate_owner_[c];
 }
 
 void Engine::find_reachable_bodies() {
@@ -205,6 +243,7 @@ void Engine::update_sleep() {
     auto& s = state_;
     const std::size_t n = s.size();
     if (options_.sleep) {
+        if (reverse_first_.empty()) find_reverse_candidates();
         const std::int32_t needed = static_cast<std::int32_t>(options_.sleep_time / options_.time_step);
         std::vector<float> speed(n, 0.0f);
         for (std::size_t i = 0; i < n; ++i) {
@@ -235,9 +274,7 @@ void Engine::update_sleep() {
                 if (speed[j] > wake) hit = true;
             };
             for (std::int32_t c = candidate_first_[i]; c < candidate_first_[i + 1]; ++c) look(candidate_[c]);
-            for (std::int32_t r = reverse_first_[i]; r < reverse_first_[i + 1]; ++r) {
-                look(static_cast<std::size_t>(candidate_owner_[reverse_[r]]));
-            }
+            for (std::int32_t r = reverse_first_[i]; r < reverse_first_[i + 1]; ++r) look(reverse_[r]);
             if (bodies_move_) {
                 for (std::size_t b = 0; b < bodies_.size(); ++b) {
                     if (body_removed_[b] || (bodies_[b].speed_x == 0 && bodies_[b].speed_z == 0)) continue;

@@ -59,13 +59,11 @@ struct Restorer {
 template <class T>
 template <class Archive>
 void Engine::KernelOf<T>::archive(Archive& to) {
-    to.array(position);
-    to.array(motion);
+    to.array(seen);
     to.array(tiles);
     to.array(rolls);
     to.array(walls);
     to.array(own_first);
-    to.array(in_first);
     to.array(wall_first);
     to.array(blocks);
     to.array(force_on_fixed_by_block);
@@ -110,7 +108,7 @@ void Engine::archive(Archive& to) {
     if (options_.precision == Precision::double_law)
         static_cast<KernelOf<double>&>(*kernel_).archive(to);
     else
-        static_cast<KernelOf<F8>&>(*kernel_).archive(to);
+        static_cast<KernelOf<WideFloat>&>(*kernel_).archive(to);
 }
 
 std::string Engine::options_text() const {

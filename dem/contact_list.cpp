@@ -3,6 +3,7 @@
 // way). It needs a fresh index for the second grain of every contact in every step; here both indices live
 // for many steps and the law sees some pairs that do not touch instead.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -13,15 +14,16 @@ namespace gradwright {
 
 template <class T>
 Engine::Kernel::Predicted Engine::KernelOf<T>::predicted(std::size_t i) const {
-    if (i + 2 >= motion.size() || motion.size() != e.state_.size() + 2) return {};
-    const Motion& m = motion[i];
+    if (i + 2 >= seen.size() || seen.size() != e.state_.size() + 2) return {};
+    const Motion& m = seen[i].motion;
     return {true, {m.vx, m.vy, m.vz}, {m.wx, m.wy, m.wz}};
 }
 
 template <class T>
 void Engine::KernelOf<T>::scale_motion(double factor) {
     const S f = static_cast<S>(factor);
-    for (Motion& m : motion) {
+    for (Seen& one : seen) {
+        Motion& m = one.motion;
         m.vx *= f, m.vy *= f, m.vz *= f;
         m.wx *= f, m.wy *= f, m.wz *= f;
     }
@@ -49,22 +51,21 @@ template <class T>
 void Engine::KernelOf<T>::write_records() {
     const auto& s = e.state_;
     const std::size_t n = s.size();
-    const bool known = motion.size() == n + 2 && !e.first_kick_;
-    position.resize(n + 2);
-    motion.resize(n + 2);
+    const bool known = seen.size() == n + 2 && !e.first_kick_;
+    seen.resize(n + 2);
     for (std::size_t i = 0; i < n; ++i) {
-        position[i] = {s.x[i], s.y[i], s.z[i], s.radius[i]};
+        seen[i].place = {s.x[i], s.y[i], s.z[i], s.radius[i]};
         const bool still =
             s.vx[i] == 0 && s.vy[i] == 0 && s.vz[i] == 0 && s.wx[i] == 0 && s.wy[i] == 0 && s.wz[i] == 0;
         if (!known || still)
-            motion[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.radius[i]),
-                         S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(0)};
+            seen[i].motion = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.radius[i]),
+                              S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(0)};
     }
     write_moving();
     // two far dummies for padding lanes
-    position[n] = {0, 0, 1e3, 1e-6};
-    position[n + 1] = {0, 0, -1e3, 1e-6};
-    motion[n] = motion[n + 1] = {0, 0, 0, S(1e-6), 0, 0, 0, 0};
+    const Motion rest = {0, 0, 0, S(1e-6), 0, 0, 0, 0};
+    seen[n] = {{0, 0, 1e3, 1e-6}, rest};
+    seen[n + 1] = {{0, 0, -1e3, 1e-6}, rest};
 }
 
 template <class T>
@@ -72,16 +73,16 @@ void Engine::KernelOf<T>::carry_history() {
     // Kept contacts (and their constants) move to the new candidate numbers. Slot code: s >= 0 same
     // orientation, -2 - s turned round, -1 none.
     const auto& new_index = e.new_index_;
-    const std::size_t known = motion.empty() ? 0 : motion.size() - 2;
-    AlignedVector<Motion> moved(e.state_.size() + 2);
+    const std::size_t known = seen.empty() ? 0 : seen.size() - 2;
+    AlignedVector<Seen> moved(e.state_.size() + 2);
     for (std::size_t i = 0; i < e.state_.size(); ++i) {
         const auto& s = e.state_;
-        moved[i] = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.radius[i]),
-                    S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(0)};
+        moved[i].motion = {S(s.vx[i]), S(s.vy[i]), S(s.vz[i]), S(s.radius[i]),
+                           S(s.wx[i]), S(s.wy[i]), S(s.wz[i]), S(0)};
     }
     for (std::size_t i = 0; i < std::min(known, new_index.size()); ++i)
-        if (new_index[i] >= 0) moved[new_index[i]] = motion[i];
-    motion.swap(moved);
+        if (new_index[i] >= 0) moved[new_index[i]] = seen[i];
+    seen.swap(moved);
     e.candidate_slot_.assign(e.candidate_.size(), -1);
     auto carry = [&](std::size_t slot) {
         const PairTile& t = tiles[slot / W];
@@ -229,7 +230,11 @@ void Engine::KernelOf<T>::rebuild_near() {
                 for (int k = 0; k < 3; ++k)
                     rolls[slot / W].angle[k][lane] = o ? turn * old_rolls[old / W].angle[k][from] : S(0);
             e.candidate_slot_[c] = static_cast<std::int32_t>(slot);
-            if (keep[c] == 1) reach = std::max(reach, j);
+            if (keep[c] != 1) continue;
+            reach = std::max(reach, j);
+            for (const std::size_t one : {i, static_cast<std::size_t>(j)})
+                if (s.fixed[one] || s.asleep[one])
+                    std::atomic_ref(blocks[one / kBlock].presses_still).store(1, std::memory_order_relaxed);
         }
     };
 #pragma omp parallel for schedule(dynamic, 2) num_threads(e.threads_)
@@ -239,13 +244,6 @@ void Engine::KernelOf<T>::rebuild_near() {
     }
     pad(active_tiles * W + parked_slots, (active_tiles + parked_tiles) * W);
 
-    // Places of the pairs in which a grain is the second, in ascending order of their slots.
-    in_first.assign(n + 1, 0);
-#pragma omp parallel for schedule(static, 256) num_threads(e.threads_)
-    for (std::size_t j = 0; j < n; ++j)
-        for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r)
-            in_first[j + 1] += keep[e.reverse_[r]] == 1;
-    std::partial_sum(in_first.begin(), in_first.end(), in_first.begin());
     rebuild_walls();
     for (std::size_t b = 0, k = 0; b < blocks.size(); ++b) {
         blocks[b].first_awake = static_cast<std::int32_t>(k);
@@ -258,99 +256,58 @@ void Engine::KernelOf<T>::rebuild_near() {
 
 template <class T>
 void Engine::KernelOf<T>::share_out() {
-    const std::size_t n = e.state_.size();
     const auto count = static_cast<std::int32_t>(blocks.size());
-    // fewer grains than this per thread cost more in waiting than they win
-    const auto threads =
-        static_cast<std::int32_t>(std::clamp<std::size_t>(e.awake_.size() / 200, 1, e.threads_));
     const auto weight = [&](std::int32_t b) {
         const Block& block = blocks[b];
         return 3.0 * (block.end_tile - block.first_tile) + 4.0 * (block.end_wall - block.first_wall) +
-               0.5 * (block.end_awake - block.first_awake);
+               4.0 / W * (block.end_awake - block.first_awake);
     };
     double all = 0;
     for (std::int32_t b = 0; b < count; ++b) all += weight(b);
-    shares.assign(threads, Share{});
-    std::int32_t next = 0;
-    double done = 0;
-    for (std::int32_t t = 0; t < threads; ++t) {
-        shares[t].first = next;
-        while (next < count && (t == threads - 1 || done + 0.5 * weight(next) < all * (t + 1) / threads))
-            done += weight(next++);
-        shares[t].end = next;
-    }
-    const auto first_grain = [&](std::int32_t b) {
-        return std::min<std::int32_t>(static_cast<std::int32_t>(n), b * static_cast<std::int32_t>(kBlock));
+    const auto tiles_of = [&](std::int32_t from, std::int32_t to) {
+        return from < to ? blocks[to - 1].end_tile - blocks[from].first_tile : 0;
     };
-    // How far ahead of the sweep records are handed, from all blocks before.
-    std::vector<std::int32_t> reach(count);
-    for (std::int32_t b = 0, top = -1; b < count; ++b) reach[b] = top = std::max(top, blocks[b].reach);
-    const auto pairs_of = [&](std::int32_t b) { return blocks[b].end_tile - blocks[b].first_tile; };
-    std::int32_t longest = 0;  // tail, in tiles
-    for (Share& share : shares) {
-        share.tail = share.end;
-        for (std::int32_t b = share.first; b < share.end; ++b)
-            if (blocks[b].reach >= first_grain(share.end)) {
-                share.tail = b;
-                break;
+    // False when a share's pairs reach beyond its neighbour: two would then add to the same sums at once.
+    const auto cut = [&](std::int32_t threads) {
+        shares.assign(threads, Share{});
+        std::int32_t next = 0, longest = 0;  // tail, in tiles
+        double done = 0;
+        for (std::int32_t t = 0; t < threads; ++t) {
+            shares[t].first = next;
+            while (next < count && (t == threads - 1 || done + 0.5 * weight(next) < all * (t + 1) / threads))
+                done += weight(next++);
+            shares[t].end = next;
+        }
+        for (std::int32_t t = 0; t < threads; ++t) {
+            Share& share = shares[t];
+            share.tail = share.end;
+            for (std::int32_t b = share.end; b-- > share.first;) {
+                if (blocks[b].reach >= first_grain(share.end)) share.tail = b;
+                if (t + 1 < threads && blocks[b].reach >= first_grain(shares[t + 1].end)) return false;
             }
-        std::int32_t tiles_of_tail = 0;
-        for (std::int32_t b = share.tail; b < share.end; ++b) tiles_of_tail += pairs_of(b);
-        longest = std::max(longest, tiles_of_tail);
-    }
-    std::int32_t span = 1, most_slots = 0;
-    for (Share& share : shares) {
+            longest = std::max(longest, tiles_of(share.tail, share.end));
+        }
         // While the longest tail is computed the others do not wait: theirs is made as long.
-        std::int32_t tiles_of_tail = 0;
-        for (std::int32_t b = share.tail; b < share.end; ++b) tiles_of_tail += pairs_of(b);
-        while (share.tail > share.first && tiles_of_tail + pairs_of(share.tail - 1) / 2 < longest)
-            tiles_of_tail += pairs_of(--share.tail);
-        for (std::int32_t b = share.first; b < share.tail; ++b) {
-            const std::int32_t to = in_first[std::min(reach[b] + 1, first_grain(share.tail))];
-            span = std::max(span, to - in_first[first_grain(b)]);
-            most_slots = std::max(most_slots, pairs_of(b) * W);
-        }
-    }
-    // The energy account reads every record after the step: none may be overwritten.
-    if (e.options_.energy_account) span = std::max(span, in_first[n]);
-    std::int32_t ring_size = 1;
-    while (ring_size < span) ring_size *= 2;
-    ring_mask = ring_size - 1;
-    std::int32_t ring_end = 0, own_end = 0;
-    if (e.options_.energy_account) own_end = static_cast<std::int32_t>((active_slots + W - 1) / W * W);
+        for (Share& share : shares)
+            while (share.tail > share.first &&
+                   2 * tiles_of(share.tail - 1, share.end) - tiles_of(share.tail - 1, share.tail) <
+                       2 * longest)
+                --share.tail;
+        return true;
+    };
+    // fewer grains than this per thread cost more in waiting than they win
+    auto threads = static_cast<std::int32_t>(std::clamp<std::size_t>(e.awake_.size() / 200, 1, e.threads_));
+    while (!cut(threads)) --threads;
+    // The energy account reads after the step what every pair did.
+    if (e.options_.energy_account)
+        for (Share& share : shares) share.tail = share.first;
+    std::int32_t kept_tiles = 0;
     for (Share& share : shares) {
-        share.ring = ring_end;
-        share.tail_ring = ring_end + ring_size;
-        share.tail_place = in_first[first_grain(share.tail)];
-        share.spill = share.tail_ring + in_first[first_grain(share.end)] - share.tail_place;
-        ring_end = (share.spill + 8) / 8 * 8;
-        share.own = own_end;
-        share.tail_own = own_end + most_slots;
-        own_end = share.tail_own;
-        if (share.tail < share.end)
-            own_end += (blocks[share.end - 1].end_tile - blocks[share.tail].first_tile) * W;
+        share.kept = kept_tiles;
+        kept_tiles += tiles_of(share.tail, share.end);
     }
-    ring.resize(ring_end);
-    own_record.resize(own_end);
-
-#pragma omp parallel for schedule(dynamic, 2) num_threads(e.threads_)
-    for (std::int32_t b = 0; b < count; ++b) {
-        const Share& share =
-            *std::find_if(shares.begin(), shares.end(), [b](const Share& one) { return b < one.end; });
-        for (std::int32_t j = first_grain(b); j < first_grain(b + 1); ++j) {
-            std::int32_t place = in_first[j];
-            for (std::int32_t r = e.reverse_first_[j]; r < e.reverse_first_[j + 1]; ++r)
-                if (const std::int32_t slot = e.candidate_slot_[e.reverse_[r]];
-                    slot >= 0 && static_cast<std::size_t>(slot) < active_slots) {
-                    tiles[slot / W].in_place[slot % W] = place < share.tail_place
-                                                             ? share.ring + (place & ring_mask)
-                                                             : share.tail_ring + place - share.tail_place;
-                    ++place;
-                }
-        }
-        for (std::int32_t slot = blocks[b].own_end; slot < blocks[b].end_tile * W; ++slot)
-            tiles[slot / W].in_place[slot % W] = share.spill;
-    }
+    kept.resize(kept_tiles);
+    sums.assign(e.state_.size() + 2, Record{});
 }
 
 template <class T>
@@ -483,16 +440,13 @@ BodyForce Engine::KernelOf<T>::force_on_fixed() const {
 }
 
 template <class T>
-std::array<double, 3> Engine::KernelOf<T>::force_on_fixed_of(const Block& block, const Record* own) const {
+std::array<double, 3> Engine::KernelOf<T>::force_on_fixed_of(const Block& block) const {
     std::array<double, 3> sum{};
-    for (std::int32_t slot = block.first_tile * W; slot < block.own_end; ++slot) {
-        const PairTile& t = tiles[slot / W];
-        const int lane = slot % W;
-        const bool fi = e.state_.fixed[t.i[lane]], fj = e.state_.fixed[t.j[lane]];
-        if (fi == fj) continue;
-        const double turn = fi ? 1 : -1;  // the record is the force on i
-        for (int k = 0; k < 3; ++k) sum[k] += turn * own[slot].value[k];
-    }
+    if (!block.presses_still) return sum;
+    const auto first = static_cast<std::int32_t>(&block - blocks.data());
+    for (std::int32_t i = first_grain(first); i < first_grain(first + 1); ++i)
+        if (e.state_.fixed[i])
+            for (int k = 0; k < 3; ++k) sum[k] += double(sums[i].value[k]);
     return sum;
 }
 
@@ -501,6 +455,13 @@ std::size_t Engine::KernelOf<T>::contacts() const {
     std::size_t count = 0;
     for (const PairTile& t : tiles)
         for (int lane = 0; lane < W; ++lane) count += t.touching[lane] > 0;
+    return count;
+}
+
+template <class T>
+std::size_t Engine::KernelOf<T>::near_pairs() const {
+    std::size_t count = 0;
+    for (const Block& block : blocks) count += block.own_end - block.first_tile * W;
     return count;
 }
 
@@ -569,13 +530,12 @@ std::size_t Engine::KernelOf<T>::contacts_beyond(double limit) const {
 template <class T>
 double Engine::KernelOf<T>::memory_bytes() const {
     auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-    return bytes(position) + bytes(motion) + bytes(moving) + bytes(tiles) + bytes(old_tiles) + bytes(rolls) +
-           bytes(old_rolls) + bytes(walls) + bytes(old_walls) + bytes(own_first) + bytes(in_first) +
-           bytes(own_record) + bytes(ring) + bytes(wall_first) + bytes(keep) + bytes(park_first) +
-           bytes(blocks);
+    return bytes(seen) + bytes(moving) + bytes(tiles) + bytes(old_tiles) + bytes(rolls) + bytes(old_rolls) +
+           bytes(walls) + bytes(old_walls) + bytes(own_first) + bytes(sums) + bytes(kept) +
+           bytes(wall_first) + bytes(keep) + bytes(park_first) + bytes(blocks);
 }
 
 template struct Engine::KernelOf<double>;
-template struct Engine::KernelOf<F8>;
+template struct Engine::KernelOf<WideFloat>;
 
 }  // namespace gradwright

@@ -58,7 +58,7 @@ Engine::Engine(const EngineOptions& options) : options_(options) {
     if (options.precision == Precision::double_law)
         kernel_ = std::make_unique<KernelOf<double>>(*this);
     else
-        kernel_ = std::make_unique<KernelOf<F8>>(*this);
+        kernel_ = std::make_unique<KernelOf<WideFloat>>(*this);
 }
 
 Engine::~Engine() = default;
@@ -187,6 +187,10 @@ std::size_t Engine::contacts() const {
     return kernel_->contacts();
 }
 
+std::size_t Engine::near_pairs() const {
+    return kernel_->near_pairs();
+}
+
 double Engine::mean_coordination() {
     const double grains = static_cast<double>(mobile());
     return grains > 0 ? kernel_->coordination_sum() / grains : 0;
@@ -295,6 +299,8 @@ long Engine::advance(long steps) {
             steps_since_near_ = 0;
             if (rebuild) max_overlap_seen_ = std::max(max_overlap_seen_, kernel_->max_overlap_ratio());
             times_.near_list += omp_get_wtime() - middle;
+            ++times_.near_lists;
+            times_.candidate_lists += rebuild;
         }
         done += options_.energy_account
                     ? step_with_account()

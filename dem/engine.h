@@ -63,6 +63,7 @@ struct PairConstants {
 
 struct EngineTimes {
     double law = 0, grains = 0, near_list = 0, candidates = 0;  ///< [s] wall
+    long near_lists = 0, candidate_lists = 0;                   ///< made so far
 };
 
 /// Force of all grains on one body or on the fixed grains [N].
@@ -121,8 +122,9 @@ class Engine {
     double max_overlap_ratio_seen() const { return max_overlap_seen_; }
     /// Share of mobile grains in a contact whose overlap exceeds `ratio` of the smaller radius now [-].
     double share_overlapping(double ratio);
-    double mean_coordination();    ///< contacts per mobile grain (floor and walls counted once)
-    std::size_t contacts() const;  ///< pair contacts alive
+    double mean_coordination();      ///< contacts per mobile grain (floor and walls counted once)
+    std::size_t contacts() const;    ///< pair contacts alive
+    std::size_t near_pairs() const;  ///< pairs that the law sees in every step, touching or not
     /// Grain indices whose overlap with a body exceeds `ratio` of their radius now.
     std::vector<std::size_t> overlapping_body(int body, double ratio) const;
     BodyForce force_on_body(int body) const;  ///< of the last force evaluation
@@ -162,6 +164,7 @@ class Engine {
     std::string options_text() const;  ///< hash of what a saved run must agree with
     void rebuild_candidates();
     void find_reachable_bodies();
+    void find_reverse_candidates();
     void update_sleep();
     /// Two things close in by no more than the sum of their ways against any common frame. Taken is the mean
     /// motion of the grains that are awake, so that a heap that is pushed along, or a bed that falls, counts
@@ -210,9 +213,10 @@ class Engine {
     // candidate list, in cell order
     std::vector<double> built_x_, built_y_, built_z_;
     std::vector<std::int32_t> candidate_first_, candidate_, candidate_owner_, candidate_slot_;
-    std::vector<std::int32_t> reverse_first_, reverse_;  ///< candidate numbers in which a grain is the second
-    std::vector<std::uint32_t> reachable_;               ///< bodies within the skin of a grain, one bit each
-    std::vector<std::int32_t> new_index_;  ///< of the last permutation: old index -> new index, -1 removed
+    std::vector<std::int32_t> reverse_first_,
+        reverse_;  ///< grains that have a grain as their candidate; only where grains sleep
+    std::vector<std::uint32_t> reachable_;  ///< bodies within the skin of a grain, one bit each
+    std::vector<std::int32_t> new_index_;   ///< of the last permutation: old index -> new index, -1 removed
     std::vector<std::int32_t> awake_;
     std::int32_t next_id_ = 0;
 

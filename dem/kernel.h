@@ -3,16 +3,16 @@
 //
 // One sweep a step. Grains stand in cell order, x slowest, and a pair belongs to its first, lower grain. So
 // once the pairs of a block of grains are computed, nothing that comes later in the order adds to its grains
-// or reads where they were, and they can be summed and moved at once, while all of it is still in the cache:
-// only the width of the moving window, two layers of cells, has to fit there. The records by which a pair
-// hands its force over never leave it: first grains' records live for one block, second grains' in a ring as
-// long as the window. On several threads each has a run of blocks; pairs that reach over its end are computed
-// by all threads first (the tail), then all sweep. A grain's sum always runs over the same slots in the same
-// order: the same bits on any number of threads. Measured against the same work in two passes over all grains
-// with the records in memory between them, `bench --grains 20000 --threads 1 --threads 2 --state settled
-// --state flowing`: million grain-steps/s settled 13.0 against 11.5 on one core and 36.2 against 29.8 on two,
-// flowing 21.8 against 15.7 on two.
+// or reads where they were, and they can be moved at once, while all of it is still in the cache: only the
+// width of the moving window, two layers of cells, has to fit there. A pair adds what it does to the sums of
+// both its grains, so that a grain's sum runs over its pairs in the order of their slots, whoever computed
+// them. On several threads each has a run of blocks; pairs of blocks that reach over its end (the tail) are
+// computed by all threads first and kept: what they do beyond the end is the first that is added there, what
+// they do within it waits until the sweep comes by. The same order, the same bits on any number of threads.
+// Rejected: records by which a pair hands its force over, summed grain by grain. A grain has from none to a
+// dozen, which the processor cannot foresee: 17 against 8 ns a grain-step for sums and motion.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -40,6 +40,7 @@ struct Engine::Kernel {
     virtual BodyForce force_on_body(int body) const = 0;
     virtual BodyForce force_on_fixed() const = 0;
     virtual std::size_t contacts() const = 0;
+    virtual std::size_t near_pairs() const = 0;
     virtual double coordination_sum() const = 0;
     virtual void forget_body(int body) = 0;
     virtual double max_overlap_ratio() const = 0;
@@ -56,12 +57,16 @@ struct Engine::KernelOf final : Engine::Kernel {
     static constexpr int W = Lane<T>::kWidth;
     using S = typename Lane<T>::Scalar;
 
-    /// What the law gathers of a grain: 64 bytes, one cache line, for the wide law.
     struct alignas(32) Position {
         double x, y, z, r;
     };
-    struct alignas(4 * sizeof(S)) Motion {
+    struct alignas(8 * sizeof(S)) Motion {
         S vx, vy, vz, r, wx, wy, wz, spare;  ///< predicted for the coming whole step
+    };
+    /// What the law gathers of a grain: one cache line for the wide law.
+    struct alignas(64) Seen {
+        Position place;
+        Motion motion;
     };
     /// Half-step velocities and what turns a force into their change; copied back to the State when a run of
     /// steps ends.
@@ -70,23 +75,26 @@ struct Engine::KernelOf final : Engine::Kernel {
         D4 w;  ///< wx, wy, wz [rad/s], 1/I [1/(kg m2)]
     };
     /// W near pairs. i < n_dummy real; padding lanes point at two far dummies.
-    struct alignas(32) PairTile {
+    struct alignas(64) PairTile {
         std::int32_t i[W], j[W];
         S radius[W], mass[W], e_star[W], g_star8[W], jkr_radius[W];
         S touching[W];
         S xi[3][W];
-        std::int32_t in_place[W];  ///< where in `ring` the second grain's record goes
     };
     /// Rolling springs of W near pairs, beside their tile; none where the rolling model has no springs.
-    struct alignas(32) RollTile {
+    struct alignas(64) RollTile {
         S angle[3][W];
     };
-    /// What a contact gives one grain: force, 0, torque, 0. 32 bytes for the wide law, so that a sum is one
-    /// add a contact.
+    /// What contacts give one grain: force, 0, torque, 0. 32 bytes for the wide law, so that a sum is one add
+    /// a contact.
     struct alignas(8 * sizeof(S)) Record {
         S value[8];
     };
-    struct alignas(32) WallTile {
+    /// What a tile's pairs do, before it is added.
+    struct alignas(64) Handed {
+        Record to_first[W], to_second[W];
+    };
+    struct alignas(64) WallTile {
         std::int32_t i[W], body[W];
         S radius[W], mass[W], e_star[W], g_star8[W], jkr_radius[W];
         S touching[W];
@@ -101,16 +109,13 @@ struct Engine::KernelOf final : Engine::Kernel {
         std::int32_t own_end = 0, wall_end = 0;       ///< slots behind the last grain's
         std::int32_t first_awake = 0, end_awake = 0;  ///< into Engine::awake_
         std::int32_t reach = -1;                      ///< highest second grain of its pairs
+        std::uint8_t presses_still = 0;  ///< 1: some pair acts on a grain of it that does not move
     };
-    /// What one thread sweeps: blocks [first, end), of which [tail, end) have pairs that reach beyond `end`.
+    /// What one thread sweeps: blocks [first, end), of which [tail, end) are those whose pairs are computed
+    /// before the sweep and kept from `kept` on.
     struct Share {
         std::int32_t first = 0, tail = 0, end = 0;
-        std::int32_t ring = 0;        ///< its part of `ring`: kept modulo ring_mask + 1 ...
-        std::int32_t tail_ring = 0;   ///< ... and in full for the grains of the tail,
-        std::int32_t tail_place = 0;  ///< whose places begin here
-        std::int32_t spill = 0;       ///< takes what padding lanes write
-        std::int32_t own = 0;         ///< its part of `own_record`: one block, ...
-        std::int32_t tail_own = 0;    ///< ... then the tail's
+        std::int32_t kept = 0;
     };
 
     explicit KernelOf(Engine& engine)
@@ -120,19 +125,17 @@ struct Engine::KernelOf final : Engine::Kernel {
 
     Engine& e;
     const bool has_rolls;
-    AlignedVector<Position> position;
-    AlignedVector<Motion> motion;
+    AlignedVector<Seen> seen;
     AlignedVector<Moving> moving;
     AlignedVector<PairTile> tiles, old_tiles;
     AlignedVector<RollTile> rolls, old_rolls;
     AlignedVector<WallTile> walls, old_walls;
-    AlignedVector<Record> own_record, ring;
-    std::int32_t ring_mask = 0;
+    AlignedVector<Record> sums;  ///< by grain; zero between steps, but for grains that do not move
+    AlignedVector<Handed> kept;  ///< of the tails, tile by tile
     std::size_t active_slots = 0,
                 parked_slots = 0;         ///< parked: both ends asleep or fixed, history kept, not computed
     std::size_t wall_slots = 0;           ///< as active_slots with the padding at the blocks' ends
     std::vector<std::int32_t> own_first;  ///< slots in which grain i is the first begin here
-    std::vector<std::int32_t> in_first;   ///< places in which grain i is the second: in_first[i] .. [i+1]
     std::vector<std::int32_t> wall_first;
     std::vector<std::uint8_t> keep;  ///< per candidate: 1 active, 2 parked
     std::vector<std::int32_t> park_first;
@@ -142,7 +145,7 @@ struct Engine::KernelOf final : Engine::Kernel {
 
     void write_records() override;
     void write_moving();
-    /// Who sweeps what, and where second grains' records go, for the pairs as they stand.
+    /// Who sweeps what, for the pairs as they stand.
     void share_out();
     Predicted predicted(std::size_t i) const override;
     void scale_motion(double factor) override;
@@ -150,22 +153,38 @@ struct Engine::KernelOf final : Engine::Kernel {
     void rebuild_walls();
     void carry_history() override;
     long run(long steps) override;
+    /// The block's pairs; what they do is added to the sums, or with `kept` left there, a tile each.
     template <bool kAdhesive, RollingModel kRolling>
-    void pair_pass(std::size_t first, std::size_t last, Record* own);
+    void pair_pass(const Block& block, Handed* kept);
     template <bool kAdhesive, RollingModel kRolling>
-    void wall_pass(std::size_t first, std::size_t last, double body_time);
+    void wall_pass(const Block& block, double body_time);
     template <bool kAdhesive, RollingModel kRolling>
     long run_with(long steps);
-    /// Sums, motion and predicted motion of a block's awake grains. `own`: by slot; `second`: by place,
-    /// modulo `mask` + 1. Returns the largest (speed against `frame` / reach)^2 [1/s2]; infinite when it is
-    /// no number.
-    double grain_pass(const Block& block, const Record* own, const Record* second, std::int32_t mask,
-                      double kick, D4 frame);
-    std::array<double, 3> force_on_fixed_of(const Block& block, const Record* own) const;
+    /// The first `lanes` pairs of a tile to the sums of their grains.
+    void hand_over(const PairTile& tile, const Handed& handed, int lanes) {
+        using Sum = typename Lane<T>::Sum;
+        for (int lane = 0; lane < lanes; ++lane) {
+            *reinterpret_cast<Sum*>(&sums[tile.i[lane]]) +=
+                *reinterpret_cast<const Sum*>(&handed.to_first[lane]);
+            *reinterpret_cast<Sum*>(&sums[tile.j[lane]]) +=
+                *reinterpret_cast<const Sum*>(&handed.to_second[lane]);
+        }
+    }
+    /// What the kept pairs of a block do to grains beyond `end`, or to those before it.
+    void hand_over_kept(const Block& block, const Handed* from, std::int32_t end, bool beyond);
+    /// Motion and predicted motion of a block's awake grains from their sums, which become zero. Returns the
+    /// largest (speed against `frame` / reach)^2 [1/s2]; infinite when it is no number.
+    double grain_pass(const Block& block, double kick, D4 frame);
+    std::array<double, 3> force_on_fixed_of(const Block& block) const;
+    std::int32_t first_grain(std::int32_t block) const {
+        return std::min(static_cast<std::int32_t>(e.state_.size()),
+                        block * static_cast<std::int32_t>(kBlock));
+    }
 
     BodyForce force_on_body(int body) const override;
     BodyForce force_on_fixed() const override;
     std::size_t contacts() const override;
+    std::size_t near_pairs() const override;
     double coordination_sum() const override;
     void forget_body(int body) override;
     template <class Visitor>
@@ -183,7 +202,7 @@ struct Engine::KernelOf final : Engine::Kernel {
         AlignedVector<RollTile> rolls;
         AlignedVector<WallTile> walls;
         State state;
-        AlignedVector<Motion> motion;
+        AlignedVector<Seen> seen;
         std::vector<Motion> earlier;  ///< predicted motion one step before, by grain number
         double body_time = 0, earlier_body_time = 0;
     } before;

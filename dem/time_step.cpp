@@ -33,8 +33,29 @@ inline void put(D4 from, double* to) {
 }  // namespace
 
 template <class T>
-double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, const Record* second,
-                                       std::int32_t mask, double kick, D4 frame) {
+void Engine::KernelOf<T>::hand_over_kept(const Block& block, const Handed* from, std::int32_t end,
+                                         bool beyond) {
+    using Sum = typename Lane<T>::Sum;
+    if (block.reach < end) {
+        for (std::int32_t k = block.first_tile; k < block.end_tile && !beyond; ++k)
+            hand_over(tiles[k], from[k - block.first_tile], std::min<std::int32_t>(W, block.own_end - k * W));
+        return;
+    }
+    for (std::int32_t slot = block.first_tile * W; slot < block.own_end; ++slot) {
+        const PairTile& t = tiles[slot / W];
+        const Handed& handed = from[slot / W - block.first_tile];
+        const int lane = slot % W;
+        if (!beyond)
+            *reinterpret_cast<Sum*>(&sums[t.i[lane]]) +=
+                *reinterpret_cast<const Sum*>(&handed.to_first[lane]);
+        if ((t.j[lane] >= end) == beyond)
+            *reinterpret_cast<Sum*>(&sums[t.j[lane]]) +=
+                *reinterpret_cast<const Sum*>(&handed.to_second[lane]);
+    }
+}
+
+template <class T>
+double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame) {
     const double dt = e.options_.time_step;
     const D4 gravity = {e.options_.gravity[0], e.options_.gravity[1], e.options_.gravity[2], 0};
     const double half = e.options_.fault.late_velocity ? 0 : 0.5 * dt;
@@ -42,20 +63,8 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, co
     double top = 0, sum = 0;  // std::max drops what is not a number, a sum keeps it
     for (std::int32_t k = block.first_awake; k < block.end_awake; ++k) {
         const std::int32_t i = e.awake_[k];
-        const bool last = (static_cast<std::size_t>(i) + 1) % kBlock == 0 ||
-                          static_cast<std::size_t>(i) + 1 == e.state_.size();  // of the block
-        Sum f = {};
-        const std::int32_t own_end = last ? block.own_end : own_first[i + 1];
-        for (std::int32_t slot = own_first[i]; slot < own_end; ++slot)
-            f += *reinterpret_cast<const Sum*>(&own[slot]);
-        for (std::int32_t place = in_first[i]; place < in_first[i + 1]; ++place)
-            f += *reinterpret_cast<const Sum*>(&second[place & mask]);
-        const std::int32_t wall_end = last ? block.wall_end : wall_first[i + 1];
-        for (std::int32_t slot = wall_first[i]; slot < wall_end; ++slot) {
-            const WallTile& t = walls[slot / W];
-            const int lane = slot % W;
-            for (int c = 0; c < 3; ++c) f[c] += t.out[c][lane], f[4 + c] += t.out[3 + c][lane];
-        }
+        const Sum f = *reinterpret_cast<const Sum*>(&sums[i]);
+        *reinterpret_cast<Sum*>(&sums[i]) = Sum{};
         D4 force, torque;
         split(f, force, torque);
         D4 v = moving[i].v, w = moving[i].w;
@@ -66,9 +75,9 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, co
         moving[i].w = w;
         D4 way = v;
         way[3] = 0;
-        D4 x = *reinterpret_cast<const D4*>(&position[i]);
+        D4 x = *reinterpret_cast<const D4*>(&seen[i].place);
         x += dt * way;
-        *reinterpret_cast<D4*>(&position[i]) = x;
+        *reinterpret_cast<D4*>(&seen[i].place) = x;
         const D4 against = v - frame;
         const double share2 = (against[0] * against[0] + against[1] * against[1] + against[2] * against[2]) *
                               e.inverse_reach2_[static_cast<std::size_t>(i)];
@@ -77,8 +86,8 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, const Record* own, co
         D4 next_v = v + half * a, next_w = w + half * b;
         next_v[3] = x[3];  // the radius stands there
         next_w[3] = 0;
-        put(next_v, &motion[i].vx);
-        put(next_w, &motion[i].wx);
+        put(next_v, &seen[i].motion.vx);
+        put(next_w, &seen[i].motion.wx);
     }
     return std::isfinite(sum) ? top : std::numeric_limits<double>::infinity();
 }
@@ -97,20 +106,15 @@ long Engine::KernelOf<T>::run_with(long steps) {
            grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
     const double body_time = e.body_time_;
     const bool first_kick = e.first_kick_;
-    const bool whole_account = e.options_.energy_account;
+    const bool tails = !kept.empty();
     const double start = omp_get_wtime();
 #pragma omp parallel num_threads(count)
     {
         double my_travel = e.travel_;
         long my_done = 0;
         const int me = omp_get_thread_num(), all = omp_get_num_threads();
-        // Records by slot, as if all slots were kept: where slot 0 would lie.
-        const auto own_of = [&](const Share& share, const Block& block, bool tail) -> Record* {
-            if (whole_account) return own_record.data();
-            const std::ptrdiff_t from =
-                tail ? share.tail_own - std::ptrdiff_t(blocks[share.tail].first_tile) * W
-                     : share.own - std::ptrdiff_t(block.first_tile) * W;
-            return own_record.data() + from;
+        const auto kept_of = [&](const Share& share, const Block& block) {
+            return kept.data() + share.kept + (block.first_tile - blocks[share.tail].first_tile);
         };
         for (long step = 0; step < steps; ++step) {
             const double bt = body_time + (e.bodies_move_ ? dt * step : 0);
@@ -124,11 +128,15 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 seconds += now - clock;
                 clock = now;
             };
-            if (count > 1) {
-                for (int s = me; s < count; s += all)
-                    for (std::int32_t b = shares[s].tail; b < shares[s].end; ++b)
-                        pair_pass<kAdhesive, kRolling>(blocks[b].first_tile, blocks[b].end_tile,
-                                                       own_of(shares[s], blocks[b], true));
+            if (tails) {
+                for (int s = me; s < count; s += all) {
+                    const Share& share = shares[s];
+                    for (std::int32_t b = share.tail; b < share.end; ++b) {
+                        Handed* const to = kept_of(share, blocks[b]);
+                        pair_pass<kAdhesive, kRolling>(blocks[b], to);
+                        hand_over_kept(blocks[b], to, first_grain(share.end), true);
+                    }
+                }
 #pragma omp barrier
                 lap(law_seconds);
             }
@@ -137,17 +145,17 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 double top = 0;
                 for (std::int32_t b = share.first; b < share.end; ++b) {
                     const Block& block = blocks[b];
-                    const bool tail = b >= share.tail;
-                    Record* const own = own_of(share, block, tail);
-                    if (!tail) pair_pass<kAdhesive, kRolling>(block.first_tile, block.end_tile, own);
-                    wall_pass<kAdhesive, kRolling>(block.first_wall, block.end_wall, bt);
+                    if (b < share.tail)
+                        pair_pass<kAdhesive, kRolling>(block, nullptr);
+                    else
+                        hand_over_kept(block, kept_of(share, block), first_grain(share.end), false);
+                    wall_pass<kAdhesive, kRolling>(block, bt);
                     lap(law_seconds);
-                    const Record* const second =
-                        ring.data() +
-                        (tail ? share.tail_ring - std::ptrdiff_t(share.tail_place) : share.ring);
-                    top = std::max(top, grain_pass(block, own, second, tail ? -1 : ring_mask, kick, frame));
                     // `force_on_fixed` is asked for after the last step only
-                    if (step == steps - 1) force_on_fixed_by_block[b] = force_on_fixed_of(block, own);
+                    if (step == steps - 1) force_on_fixed_by_block[b] = force_on_fixed_of(block);
+                    top = std::max(top, grain_pass(block, kick, frame));
+                    if (block.presses_still)
+                        std::fill(sums.begin() + first_grain(b), sums.begin() + first_grain(b + 1), Record{});
                     lap(grain_seconds);
                 }
                 tops[s * 8] = top;
@@ -169,7 +177,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 for (std::int32_t a = blocks[shares[k].first].first_awake;
                      a < blocks[shares[k].end - 1].end_awake; ++a) {
                     const std::int32_t i = e.awake_[a];
-                    s.x[i] = position[i].x, s.y[i] = position[i].y, s.z[i] = position[i].z;
+                    s.x[i] = seen[i].place.x, s.y[i] = seen[i].place.y, s.z[i] = seen[i].place.z;
                     s.vx[i] = moving[i].v[0], s.vy[i] = moving[i].v[1], s.vz[i] = moving[i].v[2];
                     s.wx[i] = moving[i].w[0], s.wy[i] = moving[i].w[1], s.wz[i] = moving[i].w[2];
                 }
@@ -214,6 +222,6 @@ long Engine::KernelOf<T>::run(long steps) {
 }
 
 template long Engine::KernelOf<double>::run(long);
-template long Engine::KernelOf<F8>::run(long);
+template long Engine::KernelOf<WideFloat>::run(long);
 
 }  // namespace gradwright

@@ -58,7 +58,7 @@ Jkr curve_of(const AdhesiveRow& row) {
 double first_lane(double v) {
     return v;
 }
-double first_lane(F8 v) {
+double first_lane(WideFloat v) {
     return static_cast<double>(v[0]);
 }
 
@@ -277,7 +277,7 @@ VerificationCases verify_jkr_curve(const VerificationOptions& options) {
     if (options.precision == Precision::double_law)
         law_cases<double>(out, options, tolerance);
     else
-        law_cases<F8>(out, options, tolerance);
+        law_cases<WideFloat>(out, options, tolerance);
     engine_cases(out, options, tolerance);
     return out;
 }

@@ -174,11 +174,11 @@ void walls(benchmark::State& state) {
 
 BENCHMARK(law<double, false, RollingModel::none>);
 BENCHMARK(law<double, true, RollingModel::constant_torque>);
-BENCHMARK(law<F8, false, RollingModel::none>);
-BENCHMARK(law<F8, true, RollingModel::none>);
-BENCHMARK(law<F8, true, RollingModel::constant_torque>);
-BENCHMARK(law<F8, true, RollingModel::edem>);
-BENCHMARK(law<F8, true, RollingModel::spring>);
+BENCHMARK(law<WideFloat, false, RollingModel::none>);
+BENCHMARK(law<WideFloat, true, RollingModel::none>);
+BENCHMARK(law<WideFloat, true, RollingModel::constant_torque>);
+BENCHMARK(law<WideFloat, true, RollingModel::edem>);
+BENCHMARK(law<WideFloat, true, RollingModel::spring>);
 BENCHMARK(stage<&EngineTimes::law>)
     ->Name("contacts_of_a_bed")
     ->ArgName("double")
