@@ -15,8 +15,9 @@ constexpr std::size_t kBlock =
     256;  // grains per work block: fixed, so that results never depend on the thread count
 
 template <class V>
-void permute(V& values, const std::vector<std::int32_t>& order) {
+void permute(V& values, const std::vector<std::int32_t>& order, int threads) {
     V sorted(order.size());
+#pragma omp parallel for schedule(static) num_threads(threads)
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
     values.swap(sorted);
 }
@@ -48,8 +49,8 @@ void Engine::remove_grains(const std::function<bool(std::size_t)>& predicate) {
 
 void Engine::rebuild_candidates() {
     auto& s = state_;
-    skin_ = options_.skin > 0 ? options_.skin : 0.45 * smallest_radius_ + 0.15 * largest_radius_;
-    near_skin_ = options_.near_skin > 0 ? options_.near_skin : 0.12 * smallest_radius_;
+    skin_ = options_.skin > 0 ? options_.skin : 0.54 * smallest_radius_ + 0.18 * largest_radius_;
+    near_skin_ = options_.near_skin > 0 ? options_.near_skin : 0.2 * smallest_radius_;
     const double cell = 2 * largest_radius_ + kWidestReach * skin_;
 
     double lo_x = 1e30, hi_x = -1e30, lo_z = 1e30, hi_z = -1e30, lo_y = 1e30, hi_y = -1e30;
@@ -105,11 +106,14 @@ void Engine::rebuild_candidates() {
         sorted_cell[at] = cell_index[i];
         new_index_[i] = at;
     }
-    s.for_each_array([&](auto& array) { permute(array, order); });
+    s.for_each_array([&](auto& array) { permute(array, order, threads_); });
     const std::size_t n = s.size();
-    built_x_ = s.x;
-    built_y_ = s.y;
-    built_z_ = s.z;
+    built_from_ = {lo_x, lo_y, lo_z};
+    built_error_ = 2 * 0x1p-24 * std::max({hi_x - lo_x, hi_y - lo_y, hi_z - lo_z, 0.0});
+    built_.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+        built_[i] = {static_cast<float>(s.x[i] - lo_x), static_cast<float>(s.y[i] - lo_y),
+                     static_cast<float>(s.z[i] - lo_z)};
     choose_wide_reach();
 
     // Candidates j > i of every grain, block by block: the grains of a row of cells stand one after the
@@ -194,14 +198,10 @@ void Engine::rebuild_candidates() {
     }
     std::partial_sum(candidate_first_.begin(), candidate_first_.end(), candidate_first_.begin());
     candidate_.resize(candidate_first_[n]);
-    candidate_owner_.resize(candidate_first_[n]);
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (std::size_t block = 0; block < blocks; ++block) {
         std::copy(found[block].begin(), found[block].end(),
                   candidate_.begin() + candidate_first_[block * kBlock]);
-        for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i)
-            std::fill(candidate_owner_.begin() + candidate_first_[i],
-                      candidate_owner_.begin() + candidate_first_[i + 1], static_cast<std::int32_t>(i));
     }
 
     find_reachable_bodies();
@@ -217,7 +217,9 @@ void Engine::find_reverse_candidates() {
     std::partial_sum(reverse_first_.begin(), reverse_first_.end(), reverse_first_.begin());
     reverse_.resize(candidate_.size());
     std::vector<std::int32_t> at(reverse_first_.begin(), reverse_first_.end() - 1);
-    for (std::size_t c = 0; c < candidate_.size(); ++c) reverse_[at[candidate_[c]]++] = candidate_owner_[c];
+    for (std::size_t i = 0; i < state_.size(); ++i)
+        for (std::int32_t c = candidate_first_[i]; c < candidate_first_[i + 1]; ++c)
+            reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(i);
 }
 
 void Engine::find_reachable_bodies() {

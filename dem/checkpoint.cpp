@@ -59,11 +59,10 @@ struct Restorer {
 template <class T>
 template <class Archive>
 void Engine::KernelOf<T>::archive(Archive& to) {
-    to.array(seen);
+    to.array(motion);
     to.array(tiles);
     to.array(rolls);
     to.array(walls);
-    to.array(own_first);
     to.array(wall_first);
     to.array(blocks);
     to.array(force_on_fixed_by_block);
@@ -99,9 +98,11 @@ void Engine::archive(Archive& to) {
     to.value(first_kick_);
     to.value(constants_valid_);
     to.value(max_overlap_seen_);
-    for (auto* array : {&built_x_, &built_y_, &built_z_}) to.array(*array);
-    for (auto* array : {&candidate_first_, &candidate_, &candidate_owner_, &candidate_slot_, &reverse_first_,
-                        &reverse_, &new_index_, &awake_})
+    to.value(built_from_);
+    to.value(built_error_);
+    to.array(built_);
+    for (auto* array :
+         {&candidate_first_, &candidate_, &candidate_slot_, &reverse_first_, &reverse_, &new_index_, &awake_})
         to.array(*array);
     to.array(reachable_);
     to.value(next_id_);

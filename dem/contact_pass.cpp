@@ -21,23 +21,29 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept) {
     const double period_z = e.options_.period_z, inv_period_z = period_z > 0 ? 1 / period_z : 0;
     const LawConstants law = e.law_;
     const LawFault fault = e.options_.fault;
+    const Place* const place = e.state_.place.data();
+    [[maybe_unused]] constexpr std::uint32_t kAllLanes = (std::uint32_t{1} << W) - 1;
     for (std::int32_t k = block.first_tile; k < block.end_tile; ++k) {
         PairTile& t = tiles[k];
         Contact<T> c;
         T dx, dy, dz, distance;
         if constexpr (W == 1) {
-            const Position &pi = seen[t.i[0]].place, &pj = seen[t.j[0]].place;
-            const Motion &mi = seen[t.i[0]].motion, &mj = seen[t.j[0]].motion;
+            const Place &pi = place[t.i[0]], &pj = place[t.j[0]];
+            const Motion &mi = motion[t.i[0]], &mj = motion[t.j[0]];
             dx = pi.x - pj.x;
             dy = pi.y - pj.y;
             dz = pi.z - pj.z;
             dx -= period_x * std::nearbyint(dx * inv_period_x);
             dy -= period * std::nearbyint(dy * inv_period);
             dz -= period_z * std::nearbyint(dz * inv_period_z);
-            const double sum = pi.r + pj.r;
+            const double sum = pi.radius + pj.radius;
             const double d2 = dx * dx + dy * dy + dz * dz;
             distance = std::sqrt(d2);
             c.overlap = (sum * sum - d2) / (sum + distance);
+            if (c.overlap < 0 && !(t.touching[0] > 0)) {
+                if (kept) kept[k - block.first_tile].idle = true;
+                continue;
+            }
             c.vx = mi.vx - mj.vx;
             c.vy = mi.vy - mj.vy;
             c.vz = mi.vz - mj.vz;
@@ -55,8 +61,8 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept) {
                 for (int four = 0; four < W / 2; four += static_cast<int>(sizeof(Half) / sizeof(double)))
                     gather4(d[half], half * W / 2 + four, [&](int lane) {
                         const D4 turn = {-1, -1, -1, 1};
-                        return *reinterpret_cast<const D4*>(&seen[t.i[lane]].place) +
-                               turn * *reinterpret_cast<const D4*>(&seen[t.j[lane]].place);
+                        return *reinterpret_cast<const D4*>(&place[t.i[lane]]) +
+                               turn * *reinterpret_cast<const D4*>(&place[t.j[lane]]);
                     });
                 if (inv_period != 0) {
                     d[half][1] -= period * nearest_whole(d[half][1] * inv_period);
@@ -74,9 +80,17 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept) {
             dz = join(d[0][2], d[1][2]);
             distance = root(join(square[0], square[1]));
             c.overlap = numerator / (sum + distance);
+            // Nothing touches and nothing did: the law would find no force and leave nothing. The history of
+            // what does not touch is never read.
+            const T zero{};
+            if (bits_where_less(c.overlap, zero) == kAllLanes &&
+                bits_where_less(zero, load<T>(t.touching)) == 0) {
+                if (kept) kept[k - block.first_tile].idle = true;
+                continue;
+            }
             T mi[8], mj[8];
-            gather8(mi, [&](int lane) { return *reinterpret_cast<const F8*>(&seen[t.i[lane]].motion); });
-            gather8(mj, [&](int lane) { return *reinterpret_cast<const F8*>(&seen[t.j[lane]].motion); });
+            gather8(mi, [&](int lane) { return *reinterpret_cast<const F8*>(&motion[t.i[lane]]); });
+            gather8(mj, [&](int lane) { return *reinterpret_cast<const F8*>(&motion[t.j[lane]]); });
             c.vx = mi[0] - mj[0];
             c.vy = mi[1] - mj[1];
             c.vz = mi[2] - mj[2];
@@ -113,6 +127,7 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept) {
         store<T>(t.touching, out.touching);
         Handed now;
         Handed& handed = kept ? kept[k - block.first_tile] : now;
+        handed.idle = false;
         T first[8] = {out.fx, out.fy, out.fz, T{}, out.tix, out.tiy, out.tiz, T{}};
         T second[8] = {-out.fx, -out.fy, -out.fz, T{}, out.tjx, out.tjy, out.tjz, T{}};
         if constexpr (W == 1) {
@@ -145,15 +160,15 @@ void Engine::KernelOf<T>::wall_pass(const Block& block, double body_time) {
             friction[lane] = 1;
             if (t.i[lane] < 0) continue;
             const Body& body = e.bodies_[t.body[lane]];
-            const Position& p = seen[t.i[lane]].place;
-            const Motion& m = seen[t.i[lane]].motion;
+            const Place& p = e.state_.place[t.i[lane]];
+            const Motion& m = motion[t.i[lane]];
             const auto near =
                 nearest_point(body, body.speed_x * body_time, body.speed_z * body_time, p.x, p.y, p.z);
             n[0][lane] = S(near.nx);
             n[1][lane] = S(near.ny);
             n[2][lane] = S(near.nz);
-            overlap[lane] = S(p.r - near.distance);
-            if (body.yield_ratio > 0) overlap[lane] = std::min(overlap[lane], S(body.yield_ratio * p.r));
+            overlap[lane] = S(p.radius - near.distance);
+            if (body.yield_ratio > 0) overlap[lane] = std::min(overlap[lane], S(body.yield_ratio * p.radius));
             const bool moving = e.bodies_move_;
             v[0][lane] = m.vx - S(moving ? body.speed_x : 0);
             v[1][lane] = m.vy;

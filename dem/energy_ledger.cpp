@@ -168,7 +168,7 @@ void Engine::KernelOf<T>::remember_for_energy() {
     before.rolls = rolls;
     before.walls = walls;
     before.state = e.state_;
-    before.seen = seen;
+    before.motion = motion;
     before.body_time = e.body_time_;
 }
 
@@ -248,7 +248,7 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         c.arm_i_before = s0.radius[i] - 0.5 * c.overlap_before;
         c.arm_j_before = s0.radius[j] - 0.5 * c.overlap_before;
         c.mean = {plus(mean(speed, i), mean(speed, j), -1), mean(spin, i), mean(spin, j)};
-        add_predicted(c.predicted, before.seen[i].motion, &before.seen[j].motion);
+        add_predicted(c.predicted, before.motion[i], &before.motion[j]);
         add_predicted(c.predicted_before, before.earlier[s0.id[i]], &before.earlier[s0.id[j]]);
         const auto& own = kept[slot / W].to_first[lane].value;
         const auto& other = kept[slot / W].to_second[lane].value;
@@ -282,7 +282,7 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         c.arm_i_before = c.arm_j_before = r - std::min(c.overlap_before, c.limit);
         if (e.bodies_move_) c.body_velocity = {body.speed_x, 0, body.speed_z};
         c.mean = {plus(mean(speed, i), c.body_velocity, -1), mean(spin, i), {}};
-        add_predicted(c.predicted, before.seen[i].motion, nullptr);
+        add_predicted(c.predicted, before.motion[i], nullptr);
         add_predicted(c.predicted_before, before.earlier[s0.id[i]], nullptr);
         c.predicted.v = plus(c.predicted.v, c.body_velocity, -1);
         c.predicted_before.v = plus(c.predicted_before.v, c.body_velocity, -1);
@@ -290,7 +290,7 @@ void Engine::KernelOf<T>::book_energy(EnergyLedger& ledger, bool opening) {
         c.torque_i = {double(t1.out[3][lane]), double(t1.out[4][lane]), double(t1.out[5][lane])};
         book(ledger, c, law, rolling, opening);
     }
-    for (std::int32_t i = 0; i < n; ++i) before.earlier[s0.id[i]] = before.seen[i].motion;
+    for (std::int32_t i = 0; i < n; ++i) before.earlier[s0.id[i]] = before.motion[i];
     before.earlier_body_time = before.body_time;
 }
 

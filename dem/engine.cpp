@@ -66,21 +66,14 @@ Engine::~Engine() = default;
 int Engine::add_grain(const GrainSpec& g) {
     auto& s = state_;
     const int id = next_id_++;
-    s.for_each_array([](auto& array) { array.push_back({}); });
-    const std::size_t i = s.size() - 1;
-    s.x[i] = g.x;
-    s.y[i] = g.y;
-    s.z[i] = g.z;
-    s.vx[i] = g.vx;
-    s.vy[i] = g.vy;
-    s.vz[i] = g.vz;
-    s.wx[i] = g.wx;
-    s.wy[i] = g.wy;
-    s.wz[i] = g.wz;
-    s.radius[i] = g.radius;
+    const std::size_t i = s.size();
+    s.for_each_array([i](auto& array) { array.resize(i), array.push_back({}); });
+    s.place[i] = {g.x, g.y, g.z, g.radius};
     s.material[i] = static_cast<std::uint8_t>(g.material);
     s.mass[i] = options_.materials.at(g.material).density * 4.0 / 3.0 * std::numbers::pi * g.radius *
                 g.radius * g.radius;
+    s.moving[i] = {g.vx, g.vy, g.vz, 1 / s.mass[i],
+                   g.wx, g.wy, g.wz, 1 / (0.4 * s.mass[i] * g.radius * g.radius)};
     s.fixed[i] = g.fixed;
     s.id[i] = id;
     largest_radius_ = std::max(largest_radius_, g.radius);
@@ -115,6 +108,8 @@ void Engine::move_body(int body, const Body& to, bool carried) {
 void Engine::set_material(std::size_t i, int material) {
     auto& s = state_;
     s.mass[i] *= options_.materials.at(material).density / options_.materials[s.material[i]].density;
+    s.moving[i].inverse_mass = 1 / s.mass[i];
+    s.moving[i].inverse_inertia = 1 / (0.4 * s.mass[i] * s.radius[i] * s.radius[i]);
     s.material[i] = static_cast<std::uint8_t>(material);
     constants_valid_ = false;
     lists_valid_ = false;
@@ -148,8 +143,8 @@ std::array<double, 3> Engine::spin(std::size_t i) const {
 
 void Engine::scale_velocities(double factor) {
     auto& s = state_;
-    for (std::size_t i = 0; i < s.size(); ++i)
-        for (auto* v : {&s.vx, &s.vy, &s.vz, &s.wx, &s.wy, &s.wz}) (*v)[i] *= factor;
+    for (Moving& m : s.moving)
+        for (double* v : {&m.vx, &m.vy, &m.vz, &m.wx, &m.wy, &m.wz}) *v *= factor;
     kernel_->scale_motion(factor);
 }
 
@@ -219,14 +214,11 @@ double Engine::memory_bytes() const {
     double bytes = kernel_->memory_bytes();
     auto count = [&](const auto& v) { bytes += static_cast<double>(v.size() * sizeof(v[0])); };
     const_cast<State&>(state_).for_each_array(count);
-    count(built_x_);
-    count(built_y_);
-    count(built_z_);
+    count(built_);
     count(reach_);
     count(wide_reach_);
     count(inverse_reach2_);
     count(reachable_);
-    count(candidate_owner_);
     count(candidate_first_);
     count(candidate_);
     count(candidate_slot_);

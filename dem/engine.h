@@ -211,8 +211,10 @@ class Engine {
     std::vector<float> reach_, wide_reach_, inverse_reach2_;
 
     // candidate list, in cell order
-    std::vector<double> built_x_, built_y_, built_z_;
-    std::vector<std::int32_t> candidate_first_, candidate_, candidate_owner_, candidate_slot_;
+    std::array<double, 3> built_from_{};       ///< where the grains stood then: from this corner [m], ...
+    std::vector<std::array<float, 3>> built_;  ///< ... in float,
+    double built_error_ = 0;                   ///< so far off at most
+    std::vector<std::int32_t> candidate_first_, candidate_, candidate_slot_;
     std::vector<std::int32_t> reverse_first_,
         reverse_;  ///< grains that have a grain as their candidate; only where grains sleep
     std::vector<std::uint32_t> reachable_;  ///< bodies within the skin of a grain, one bit each

@@ -57,22 +57,9 @@ struct Engine::KernelOf final : Engine::Kernel {
     static constexpr int W = Lane<T>::kWidth;
     using S = typename Lane<T>::Scalar;
 
-    struct alignas(32) Position {
-        double x, y, z, r;
-    };
+    /// What the law gathers of a grain beside its place.
     struct alignas(8 * sizeof(S)) Motion {
         S vx, vy, vz, r, wx, wy, wz, spare;  ///< predicted for the coming whole step
-    };
-    /// What the law gathers of a grain: one cache line for the wide law.
-    struct alignas(64) Seen {
-        Position place;
-        Motion motion;
-    };
-    /// Half-step velocities and what turns a force into their change; copied back to the State when a run of
-    /// steps ends.
-    struct Moving {
-        D4 v;  ///< vx, vy, vz [m/s], 1/m [1/kg]
-        D4 w;  ///< wx, wy, wz [rad/s], 1/I [1/(kg m2)]
     };
     /// W near pairs. i < n_dummy real; padding lanes point at two far dummies.
     struct alignas(64) PairTile {
@@ -93,6 +80,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// What a tile's pairs do, before it is added.
     struct alignas(64) Handed {
         Record to_first[W], to_second[W];
+        bool idle;  ///< nothing touches: the records are not filled
     };
     struct alignas(64) WallTile {
         std::int32_t i[W], body[W];
@@ -106,7 +94,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     static constexpr std::size_t kBlock = 128;
     struct Block {
         std::int32_t first_tile = 0, end_tile = 0, first_wall = 0, end_wall = 0;
-        std::int32_t own_end = 0, wall_end = 0;       ///< slots behind the last grain's
+        std::int32_t own_end = 0, wall_end = 0;  ///< slots behind the last grain's
+        std::int32_t own_touching = 0;           ///< of its pairs, those that touched when the list was made
         std::int32_t first_awake = 0, end_awake = 0;  ///< into Engine::awake_
         std::int32_t reach = -1;                      ///< highest second grain of its pairs
         std::uint8_t presses_still = 0;  ///< 1: some pair acts on a grain of it that does not move
@@ -116,6 +105,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     struct Share {
         std::int32_t first = 0, tail = 0, end = 0;
         std::int32_t kept = 0;
+        double cost = 0;  ///< of its blocks, as share_out() reckons it
     };
 
     explicit KernelOf(Engine& engine)
@@ -125,28 +115,29 @@ struct Engine::KernelOf final : Engine::Kernel {
 
     Engine& e;
     const bool has_rolls;
-    AlignedVector<Seen> seen;
-    AlignedVector<Moving> moving;
+    AlignedVector<Motion> motion;
     AlignedVector<PairTile> tiles, old_tiles;
     AlignedVector<RollTile> rolls, old_rolls;
     AlignedVector<WallTile> walls, old_walls;
     AlignedVector<Record> sums;  ///< by grain; zero between steps, but for grains that do not move
     AlignedVector<Handed> kept;  ///< of the tails, tile by tile
     std::size_t active_slots = 0,
-                parked_slots = 0;         ///< parked: both ends asleep or fixed, history kept, not computed
-    std::size_t wall_slots = 0;           ///< as active_slots with the padding at the blocks' ends
-    std::vector<std::int32_t> own_first;  ///< slots in which grain i is the first begin here
+                parked_slots = 0;  ///< parked: both ends asleep or fixed, history kept, not computed
+    std::size_t wall_slots = 0;    ///< as active_slots with the padding at the blocks' ends
     std::vector<std::int32_t> wall_first;
-    std::vector<std::uint8_t> keep;  ///< per candidate: 1 active, 2 parked
+    std::vector<std::uint8_t> keep;  ///< per candidate: what becomes of it (contact_list.cpp)
     std::vector<std::int32_t> park_first;
     std::vector<Block> blocks;
     std::vector<Share> shares;
+    std::vector<double> pace;  ///< of each share's thread: cost over time, against the mean of all
     std::vector<std::array<double, 3>> force_on_fixed_by_block;  ///< of the last step [N]
 
     void write_records() override;
-    void write_moving();
-    /// Who sweeps what, for the pairs as they stand.
+    /// Who sweeps what, for the pairs as they stand. Shares are cut so that all threads end together, by how
+    /// fast each was: cores differ, and others use them too.
     void share_out();
+    /// `busy`: seconds that each share took in the steps just done.
+    void learn_pace(const std::vector<double>& busy);
     Predicted predicted(std::size_t i) const override;
     void scale_motion(double factor) override;
     void rebuild_near() override;
@@ -202,7 +193,7 @@ struct Engine::KernelOf final : Engine::Kernel {
         AlignedVector<RollTile> rolls;
         AlignedVector<WallTile> walls;
         State state;
-        AlignedVector<Seen> seen;
+        AlignedVector<Motion> motion;
         std::vector<Motion> earlier;  ///< predicted motion one step before, by grain number
         double body_time = 0, earlier_body_time = 0;
     } before;

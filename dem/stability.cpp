@@ -158,8 +158,8 @@ double top_speed(const StabilitySetup& setup, const Box& box, double fraction) {
     State& s = engine.state();
     for (std::size_t i = 0; i < s.size(); ++i) {
         const double part = speed * std::pow(kRadius / s.radius[i], 1.5);
-        for (auto* v : {&s.vx, &s.vy, &s.vz}) (*v)[i] = part * random.normal();
-        for (auto* w : {&s.wx, &s.wy, &s.wz}) (*w)[i] = part / s.radius[i] * random.normal();
+        for (double* v : {&s.vx[i], &s.vy[i], &s.vz[i]}) *v = part * random.normal();
+        for (double* w : {&s.wx[i], &s.wy[i], &s.wz[i]}) *w = part / s.radius[i] * random.normal();
     }
     engine.refresh();
     const long steps = std::lround(kWatch / fraction), burst = std::max(1L, std::lround(5 / fraction));

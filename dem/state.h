@@ -1,4 +1,4 @@
-// Grains as structure of arrays, in cell order; `id` is the grain's own number and never changes.
+// Grains in cell order; `id` is the grain's own number and never changes.
 #pragma once
 #ifdef __linux__
 #include <sys/mman.h>
@@ -43,24 +43,78 @@ struct AlignedAllocator {
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
-/// Velocities and spins stand at the last half step (leapfrog form of velocity Verlet).
+/// Where a grain is: what a step gathers of it [m].
+struct alignas(32) Place {
+    double x, y, z;  ///< y unwrapped when periodic
+    double radius;
+};
+/// How it moves, at the last half step (leapfrog form of velocity Verlet), and what turns a force or a torque
+/// into a change of that.
+struct alignas(64) Moving {
+    double vx, vy, vz;       ///< [m/s]
+    double inverse_mass;     ///< [1/kg]
+    double wx, wy, wz;       ///< [rad/s]
+    double inverse_inertia;  ///< [1/(kg m2)]
+};
+
+/// One member of all rows, as if it were an array of its own.
+template <class Row, double Row::*kMember>
+class Column {
+  public:
+    explicit Column(AlignedVector<Row>& rows) : rows_(&rows) {}
+    Column(const Column&) = delete;
+    Column& operator=(const Column&) = delete;
+    double& operator[](std::size_t i) { return (*rows_)[i].*kMember; }
+    double operator[](std::size_t i) const { return (*rows_)[i].*kMember; }
+
+  private:
+    AlignedVector<Row>* rows_;
+};
+
+/// Grains in rows of what is read together; `x`, `vx` and so on are columns of those rows.
 struct State {
-    std::vector<double> x, y, z;       ///< [m], y unwrapped when periodic
-    std::vector<double> vx, vy, vz;    ///< [m/s]
-    std::vector<double> wx, wy, wz;    ///< [rad/s]
-    std::vector<double> radius, mass;  ///< [m], [kg]
+    State() = default;
+    State(const State& other) : State() { *this = other; }
+    State& operator=(const State& other) {
+        place = other.place;
+        moving = other.moving;
+        mass = other.mass;
+        id = other.id;
+        material = other.material;
+        fixed = other.fixed;
+        asleep = other.asleep;
+        quiet = other.quiet;
+        return *this;
+    }
+
+    AlignedVector<Place> place;    ///< may have more rows than there are grains: the engine's dummies
+    AlignedVector<Moving> moving;  ///< of a fixed grain all zero
+    std::vector<double> mass;      ///< [kg]
     std::vector<std::int32_t> id;
     std::vector<std::uint8_t> material;  ///< index into EngineOptions::materials
     std::vector<std::uint8_t> fixed;     ///< 1: never moves (rough floors)
     std::vector<std::uint8_t> asleep;
     std::vector<std::int32_t> quiet;  ///< steps at rest so far
 
-    std::size_t size() const { return x.size(); }
+    Column<Place, &Place::x> x{place};
+    Column<Place, &Place::y> y{place};
+    Column<Place, &Place::z> z{place};
+    Column<Place, &Place::radius> radius{place};
+    Column<Moving, &Moving::vx> vx{moving};
+    Column<Moving, &Moving::vy> vy{moving};
+    Column<Moving, &Moving::vz> vz{moving};
+    Column<Moving, &Moving::wx> wx{moving};
+    Column<Moving, &Moving::wy> wy{moving};
+    Column<Moving, &Moving::wz> wz{moving};
 
-    /// Every per-grain array, for permutations and removals: one list, so that no array is forgotten.
+    std::size_t size() const { return id.size(); }
+
+    /// Every array with a row a grain, for permutations and removals: one list, so that none is forgotten.
     template <class Visitor>
     void for_each_array(Visitor&& visit) {
-        for (auto* a : {&x, &y, &z, &vx, &vy, &vz, &wx, &wy, &wz, &radius, &mass}) visit(*a);
+        visit(place);
+        visit(moving);
+        visit(mass);
         visit(id);
         visit(material);
         visit(fixed);

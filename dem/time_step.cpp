@@ -38,12 +38,15 @@ void Engine::KernelOf<T>::hand_over_kept(const Block& block, const Handed* from,
     using Sum = typename Lane<T>::Sum;
     if (block.reach < end) {
         for (std::int32_t k = block.first_tile; k < block.end_tile && !beyond; ++k)
-            hand_over(tiles[k], from[k - block.first_tile], std::min<std::int32_t>(W, block.own_end - k * W));
+            if (!from[k - block.first_tile].idle)
+                hand_over(tiles[k], from[k - block.first_tile],
+                          std::min<std::int32_t>(W, block.own_end - k * W));
         return;
     }
     for (std::int32_t slot = block.first_tile * W; slot < block.own_end; ++slot) {
         const PairTile& t = tiles[slot / W];
         const Handed& handed = from[slot / W - block.first_tile];
+        if (handed.idle) continue;
         const int lane = slot % W;
         if (!beyond)
             *reinterpret_cast<Sum*>(&sums[t.i[lane]]) +=
@@ -60,6 +63,8 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame
     const D4 gravity = {e.options_.gravity[0], e.options_.gravity[1], e.options_.gravity[2], 0};
     const double half = e.options_.fault.late_velocity ? 0 : 0.5 * dt;
     using Sum = typename Lane<T>::Sum;
+    Place* const place = e.state_.place.data();
+    Moving* const moving = e.state_.moving.data();
     double top = 0, sum = 0;  // std::max drops what is not a number, a sum keeps it
     for (std::int32_t k = block.first_awake; k < block.end_awake; ++k) {
         const std::int32_t i = e.awake_[k];
@@ -67,17 +72,17 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame
         *reinterpret_cast<Sum*>(&sums[i]) = Sum{};
         D4 force, torque;
         split(f, force, torque);
-        D4 v = moving[i].v, w = moving[i].w;
+        D4 v = *reinterpret_cast<const D4*>(&moving[i].vx), w = *reinterpret_cast<const D4*>(&moving[i].wx);
         const D4 a = force * v[3] + gravity, b = torque * w[3];  // fourth lanes are zero
         v += kick * a;
         w += kick * b;
-        moving[i].v = v;
-        moving[i].w = w;
+        *reinterpret_cast<D4*>(&moving[i].vx) = v;
+        *reinterpret_cast<D4*>(&moving[i].wx) = w;
         D4 way = v;
         way[3] = 0;
-        D4 x = *reinterpret_cast<const D4*>(&seen[i].place);
+        D4 x = *reinterpret_cast<const D4*>(&place[i]);
         x += dt * way;
-        *reinterpret_cast<D4*>(&seen[i].place) = x;
+        *reinterpret_cast<D4*>(&place[i]) = x;
         const D4 against = v - frame;
         const double share2 = (against[0] * against[0] + against[1] * against[1] + against[2] * against[2]) *
                               e.inverse_reach2_[static_cast<std::size_t>(i)];
@@ -86,8 +91,8 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame
         D4 next_v = v + half * a, next_w = w + half * b;
         next_v[3] = x[3];  // the radius stands there
         next_w[3] = 0;
-        put(next_v, &seen[i].motion.vx);
-        put(next_w, &seen[i].motion.wx);
+        put(next_v, &motion[i].vx);
+        put(next_w, &motion[i].wx);
     }
     return std::isfinite(sum) ? top : std::numeric_limits<double>::infinity();
 }
@@ -101,6 +106,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
     const auto count = static_cast<int>(shares.size());
     std::vector<double> tops(static_cast<std::size_t>(count) * 8, 0.0);
+    std::vector<double> busy(static_cast<std::size_t>(count), 0.0);
     long done = 0;
     double travel = e.travel_, law_seconds = 0,
            grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
@@ -110,7 +116,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const double start = omp_get_wtime();
 #pragma omp parallel num_threads(count)
     {
-        double my_travel = e.travel_;
+        double my_travel = e.travel_, my_busy = 0;
         long my_done = 0;
         const int me = omp_get_thread_num(), all = omp_get_num_threads();
         const auto kept_of = [&](const Share& share, const Block& block) {
@@ -119,9 +125,17 @@ long Engine::KernelOf<T>::run_with(long steps) {
         for (long step = 0; step < steps; ++step) {
             const double bt = body_time + (e.bodies_move_ ? dt * step : 0);
             const double kick = first_kick && step == 0 ? 0.5 * dt : dt;
-            // what a stage costs is looked at in every eighth step, by the first thread
-            const bool clocked = me == 0 && step % 8 == 0;
+            // what a stage costs is looked at in every eighth step, by the first thread; how long a share
+            // takes by its own
+            const bool watched = step % 8 == 0, clocked = me == 0 && watched;
             double clock = clocked ? omp_get_wtime() : 0;
+            const auto watch = [&](double& start) {
+                const double now = watched && count == all ? omp_get_wtime() : 0;
+                if (start > 0) my_busy += now - start;
+                start = now;
+            };
+            double since = 0;
+            watch(since);
             const auto lap = [&](double& seconds) {
                 if (!clocked) return;
                 const double now = omp_get_wtime();
@@ -137,8 +151,11 @@ long Engine::KernelOf<T>::run_with(long steps) {
                         hand_over_kept(blocks[b], to, first_grain(share.end), true);
                     }
                 }
+                watch(since);
 #pragma omp barrier
                 lap(law_seconds);
+                since = 0;
+                watch(since);
             }
             for (int s = me; s < count; s += all) {
                 const Share& share = shares[s];
@@ -161,6 +178,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 tops[s * 8] = top;
             }
             if (count > 1) {
+                watch(since);
 #pragma omp barrier
             }
             double top = 0;
@@ -171,21 +189,13 @@ long Engine::KernelOf<T>::run_with(long steps) {
             // `not (a <= b)`: a speed that is not a number ends the block too
             if (!(my_travel <= 1)) break;
         }
-        State& s = e.state_;
-        for (int k = me; k < count; k += all)
-            if (shares[k].first < shares[k].end)
-                for (std::int32_t a = blocks[shares[k].first].first_awake;
-                     a < blocks[shares[k].end - 1].end_awake; ++a) {
-                    const std::int32_t i = e.awake_[a];
-                    s.x[i] = seen[i].place.x, s.y[i] = seen[i].place.y, s.z[i] = seen[i].place.z;
-                    s.vx[i] = moving[i].v[0], s.vy[i] = moving[i].v[1], s.vz[i] = moving[i].v[2];
-                    s.wx[i] = moving[i].w[0], s.wy[i] = moving[i].w[1], s.wz[i] = moving[i].w[2];
-                }
+        if (count == all) busy[me] = my_busy;
         if (me == 0) {
             travel = my_travel;
             done = my_done;
         }
     }
+    learn_pace(busy);
     e.first_kick_ = false;
     e.travel_ = std::isfinite(travel) ? travel : 1e9;
     e.steps_ += done;

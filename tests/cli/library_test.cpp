@@ -43,15 +43,18 @@ TEST_F(Library, installed_and_moved_is_found_built_against_and_run) {
     std::getline(lines, line);
     EXPECT_THAT(line, HasSubstr(" grains, "));
     std::getline(lines, line);
-    // Ten bins of 0.05 mm over 0.5 mm. A lies above a rising cut, so GI rises with y, in the strip and in the
-    // picture.
+    // Ten bins of 0.05 mm over 0.5 mm. A lies above a rising cut: each laid grain is B up to some y and A
+    // from there on, so that GI never falls, in the strip as in the picture. Where it rises is chance, with
+    // so few.
     std::vector<std::array<double, 4>> rows;
     for (std::array<double, 4> row; lines >> row[0] >> row[1] >> row[2] >> row[3];) rows.push_back(row);
     ASSERT_EQ(rows.size(), 10u) << said();
     for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(rows[i][0], 0.05 * (i + 0.5), 1e-3);
-    EXPECT_LT(rows[1][1], 0.2);
-    EXPECT_GT(rows[8][1], 0.8);
-    EXPECT_LT(rows[1][3], rows[8][3]);
+    for (const int column : {1, 3}) {
+        for (std::size_t i = 1; i < rows.size(); ++i)
+            EXPECT_GE(rows[i][column], rows[i - 1][column]) << said();
+        EXPECT_GT(rows[9][column] - rows[0][column], 0.3) << said();
+    }
     // the study's mistakes arrive as problems
     shell("./build/saw_cut source/CMakeLists.txt 20; test $? = 3");
 

@@ -121,7 +121,7 @@ TEST_P(Determinism, a_run_in_which_bodies_and_grains_were_moved_is_restored_and_
         EXPECT_EQ(straight.body_shift_x(1), 0);
         straight.move_body(1, straight.bodies()[1], false);
         straight.move_body(0, moved(straight), true);
-        for (double& z : straight.state().z) z -= 0.5 * kRadius;
+        for (std::size_t i = 0; i < straight.state().size(); ++i) straight.state().z[i] -= 0.5 * kRadius;
         straight.wake_all();
         straight.advance(1);
         EXPECT_NEAR(double(straight.contacts()), double(contacts), 0.05 * double(contacts));
