@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "dem/engine.h"
 #include "dem/random.h"
 
@@ -73,6 +75,52 @@ TEST_P(Determinism, one_two_three_and_eight_threads_leave_the_same_bits) {
     const std::string one = whole_run(GetParam(), 1);
     for (const int threads : {2, 3, 8})
         EXPECT_EQ(whole_run(GetParam(), threads), one) << threads << " threads";
+}
+
+/// A bed far wider than it is long, its period `period` [m] or open at both sides: ordered along y, folded
+/// where it is periodic.
+std::string wide_run(Precision precision, double period, int threads) {
+    EngineOptions o = powder(precision, threads);
+    o.period_y = period;
+    Engine engine(o);
+    engine.add_body({});  // a floor
+    Random random(11);
+    for (int k = 0; k < kGrains; ++k)
+        engine.add_grain({.x = kRadius * (2.1 * (k % 5) + 0.1 * random.uniform()),
+                          .y = kRadius * (2.1 * (k / 5 % 90) + 0.1 * random.uniform()),
+                          .z = kRadius * (1.1 + 2.1 * (k / 450)),
+                          .vy = 0.05 * random.normal(),
+                          .radius = kRadius * (0.6 + 0.4 * random.uniform()),
+                          .material = k % 2});
+    for (int portion = 0; portion < 4; ++portion) {
+        engine.advance(150);
+        const State& s = engine.state();
+        std::size_t sure = 0;
+        for (std::size_t i = 0; i < s.size(); ++i)
+            for (std::size_t j = i + 1; j < s.size(); ++j) {
+                double dy = s.y[i] - s.y[j];
+                if (period > 0) dy -= period * std::nearbyint(dy / period);
+                const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j], sum = s.radius[i] + s.radius[j];
+                sure += dx * dx + dy * dy + dz * dz < sum * sum * (1 - 1e-9);
+            }
+        engine.advance(1);
+        EXPECT_EQ(engine.failed(), "");
+        EXPECT_GE(engine.contacts(), sure);  // and some that adhesion holds
+        if (portion == 3) {
+            EXPECT_GT(sure, 500u);
+            EXPECT_LT(engine.contacts(), sure + sure / 3);
+        }
+    }
+    return engine.state_hash();
+}
+
+TEST_P(Determinism, a_bed_ordered_along_its_width_has_every_contact_and_the_same_bits) {
+    for (const double period : {0.0, 2.1 * 90 * kRadius, 2.1 * 91.3 * kRadius}) {
+        const std::string one = wide_run(GetParam(), period, 1);
+        for (const int threads : {2, 3, 8})
+            EXPECT_EQ(wide_run(GetParam(), period, threads), one)
+                << period << " m, " << threads << " threads";
+    }
 }
 
 TEST_P(Determinism, a_run_saved_at_any_step_and_restored_goes_on_with_the_same_bits) {
