@@ -146,10 +146,9 @@ ReposeResult drain(const Scene& scene, const ReposeSetup& setup, const SpreadOpt
 }
 
 std::vector<double> coverage_along(const Layer& layer, int parts) {
-    const double cell = 0.2e-3;
     std::vector<double> out(std::max(parts, 1), 0);
-    const int nx = std::max(1, static_cast<int>(std::lround(layer.platform_length / cell))),
-              ny = std::max(1, static_cast<int>(std::lround(layer.width / cell)));
+    const int nx = std::max(1, static_cast<int>(std::lround(layer.platform_length / kCoverageCell))),
+              ny = std::max(1, static_cast<int>(std::lround(layer.width / kCoverageCell)));
     if (!(layer.width > 0) || layer.size() == 0) return out;
     std::vector<double> solid(static_cast<std::size_t>(nx) * ny, 0);
     for (std::size_t k = 0; k < layer.size(); ++k) {

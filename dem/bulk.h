@@ -40,8 +40,11 @@ struct ReposeResult {
 /// NaN), so the angle depends on `height`: both are results.
 ReposeResult drain(const Scene& scene, const ReposeSetup& setup, const SpreadOptions& options);
 
+inline constexpr double kCoverageCell = 0.2e-3;  ///< side of the cells of coverage [m]
+
 /// Layer quality along the platform: share of square cells of a fifth of a millimetre whose solid depth
-/// exceeds half the mean of all cells, in `parts` equal parts along x (physics.md 5, coverage).
+/// exceeds half the mean of all cells, in `parts` equal parts along x (physics.md 5, coverage); NaN in a part
+/// without a cell, so no more parts than cells.
 std::vector<double> coverage_along(const Layer& layer, int parts);
 
 }  // namespace gradwright

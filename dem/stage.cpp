@@ -252,12 +252,15 @@ Layer measure_layer(const Scene& scene, const Stage& stage, const Pass& pass,
     for (std::size_t k = 0; k < layer.size(); ++k)
         if (layer.deposit_x[k] > 0.9 * scene.platform_length) last += layer.volume[k];
     if (last * 10 < layer.solid_volume() / 3) {
+        // a part shorter than a cell would have no coverage
+        const int parts =
+            std::clamp(static_cast<int>(std::lround(scene.platform_length / kCoverageCell)), 1, 10);
         std::string along;
-        for (const double share : coverage_along(layer, 10)) along += fmt::format(" {:.2f}", share);
+        for (const double share : coverage_along(layer, parts)) along += fmt::format(" {:.2f}", share);
         const std::string text = fmt::format(
-            "the heap ran dry before the platform's end (coverage of its tenths along x:{}): raise the "
-            "dosage factor",
-            along);
+            "the heap ran dry before the platform's end (coverage of its {} equal parts along x:{}): raise "
+            "the dosage factor",
+            parts, along);
         if (scene.allow_starved) {
             health.warnings.push_back(text);
         } else {

@@ -29,6 +29,7 @@ TEST_P(HardCases, ends_as_it_must) {
     const HardCase c = run_hard_case(hard_cases()[GetParam()], options);
     EXPECT_TRUE(c.pass) << c.tried << "\n  must: " << c.expected << "\n  happened: " << c.happened;
     EXPECT_FALSE(c.happened.empty());
+    EXPECT_EQ(c.happened.find("nan"), std::string::npos) << c.happened;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::Range<std::size_t>(0, hard_cases().size()),
