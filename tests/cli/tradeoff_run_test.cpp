@@ -14,8 +14,10 @@ class TradeoffVerb : public CalledProgram {
   protected:
     Outcome call(std::vector<std::string> more) const {
         std::ofstream(folder_ / "strip.toml") << kSmallStudy;
-        std::vector<std::string> words{"tradeoff", (folder_ / "strip.toml").string(), "--quiet", "--threads",
-                                       "1"};
+        // slowly, so that a dozen grains are laid and not six: a level that lays none is starved
+        std::vector<std::string> words{
+            "tradeoff", (folder_ / "strip.toml").string(), "--quiet", "--threads", "1",
+            "--set",    "process.blade_speed=\"60 mm/s\""};
         words.insert(words.end(), more.begin(), more.end());
         return run(words);
     }
