@@ -105,7 +105,9 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const double body_top = e.body_speed();
     const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
     const auto count = static_cast<int>(shares.size());
-    std::vector<double> tops(static_cast<std::size_t>(count) * 8, 0.0);
+    // Two sets, by turns: between two steps without tails stands one barrier, and a thread that is past it
+    // may write its next one while another still reads.
+    std::vector<double> tops(static_cast<std::size_t>(count) * 16, 0.0);
     std::vector<double> busy(static_cast<std::size_t>(count), 0.0);
     long done = 0;
     double travel = e.travel_, law_seconds = 0,
@@ -189,14 +191,14 @@ long Engine::KernelOf<T>::run_with(long steps) {
                         std::fill(sums.begin() + first_grain(b), sums.begin() + first_grain(b + 1), Record{});
                     lap(grain_seconds);
                 }
-                tops[s * 8] = top;
+                tops[s * 16 + step % 2 * 8] = top;
             }
             if (count > 1) {
                 watch(since);
 #pragma omp barrier
             }
             double top = 0;
-            for (int k = 0; k < count; ++k) top = std::max(top, tops[k * 8]);
+            for (int k = 0; k < count; ++k) top = std::max(top, tops[k * 16 + step % 2 * 8]);
             top = std::sqrt(top);
             my_travel += dt * std::max(top, rest_rate);
             my_done = step + 1;
