@@ -145,6 +145,10 @@ nlohmann::json crosscheck_json(const Crosscheck& result, const CrosscheckOptions
             {"gi_rmse", number(result.gi_rmse)},
             {"gi_rmse_of_means", number(result.gi_rmse_of_means)},
             {"gi_bias", number(result.gi_bias)},
+            {"gi_bias_standard_error", number(result.gi_bias_error)},
+            {"gi_p_value", number(result.gi_p_value)},
+            {"beds_to_judge", kBedsToJudge},
+            {"differs_below", kDiffersBelow},
             {"noise_rms", number(result.noise_rms)},
             {"noise_allowed", kNoiseAllowed},
             {"two_body_max_relative_error", number(result.two_body.max_relative_error)},
@@ -209,11 +213,19 @@ void print_crosscheck(const Study& study, const Crosscheck& result) {
             fmt::print("  GI at y = {:.2f} mm                     {:>10.3f} {:>10.3f}\n", 1e3 * result.y_m[b],
                        ours[b], theirs[b]);
     fmt::print(
-        "\nGI(y), LAMMPS - gradwright on the same bed: rms {:.4f} (of the means {:.4f}, bias {:+.4f})\n",
-        result.gi_rmse, result.gi_rmse_of_means, result.gi_bias);
-    fmt::print("one engine between beds: rms {:.4f}; ratio {:.2f}, {} allowed: the gradation {}\n",
-               result.noise_rms, result.gi_rmse / result.noise_rms, kNoiseAllowed,
-               result.gradation_agrees ? "agrees" : "DIFFERS");
+        "\nGI(y), LAMMPS - gradwright on the same bed: rms {:.4f} (of the means {:.4f}, bias {:+.4f} +- "
+        "{:.4f})\n",
+        result.gi_rmse, result.gi_rmse_of_means, result.gi_bias, result.gi_bias_error);
+    const std::size_t beds = result.lammps.runs.size();
+    fmt::print("one engine between beds: rms {:.4f}; ratio {:.2f}; by chance in a share {:.2g} of cases\n",
+               result.noise_rms, result.gi_rmse / result.noise_rms, result.gi_p_value);
+    if (beds >= std::size_t(kBedsToJudge))
+        fmt::print("the gradation {}: {} beds, chance below {} would tell the engines apart\n",
+                   result.gradation_agrees ? "agrees" : "DIFFERS", beds, kDiffersBelow);
+    else
+        fmt::print("the gradation {}: ratio {} allowed; {} beds are too few to be sure, {} tell\n",
+                   result.gradation_agrees ? "seems to agree" : "seems to DIFFER", kNoiseAllowed, beds,
+                   kBedsToJudge);
     fmt::print("\nwhat is not the same:\n");
     for (const std::string& difference : result.differences) fmt::print("  - {}\n", difference);
     for (const CrosscheckEngine* engine : {&result.ours, &result.lammps})

@@ -32,7 +32,7 @@ STUDIES = {
     # name: study, its settings, evaluations a strategy
     "linear": ("examples/01_linear_coupon.toml", SMALL + RAMP, 20),
     "sigmoid": ("examples/02_sigmoid_coupon.toml",
-                COUPON + SMALL[4:] + ["target.centre=\"0.45 mm\"", "target.width_10_90=\"0.3 mm\""], 16),
+                COUPON + SMALL[4:] + ["target.centre=\"0.45 mm\"", "target.width_10_90=\"0.3 mm\""], 20),
     # a plate that is there already: what remains are the dose and how much of it each chamber's own piston gives
     "three": ("examples/01_linear_coupon.toml",
               SMALL + RAMP + ["design_space.partition={family=\"straight\", angle=\"18 deg\", offset=\"0.05 mm\"}",

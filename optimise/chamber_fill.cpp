@@ -71,6 +71,25 @@ ChamberFill chamber_fill_of_layer(const Study& study, const Design& design, int 
                          scene.dose_height / std::max(design.dose[0], design.dose[1]));
 }
 
+double step_doubt(const Study& study, const Design& design, const GradationProfile& profile,
+                  const std::vector<double>& weight) {
+    const Scene scene = scene_of(study, design, false, 0);
+    const double grain = std::min(scene.powder[0].size.d50, scene.powder[1].size.d50),
+                 beyond = std::fabs(scene.headspace[0] - scene.headspace[1]) - grain;
+    if (!(beyond > 0)) return 0;
+    double sum = 0, all = 0;
+    const std::size_t bins = profile.gi.size();
+    for (std::size_t b = 0; b < bins; ++b) {
+        const std::size_t from = b > 0 ? b - 1 : b, to = std::min(b + 1, bins - 1);
+        if (!(weight[b] > 0) || from == to) continue;
+        const double slope = (profile.gi[to] - profile.gi[from]) / (profile.y_m[to] - profile.y_m[from]);
+        if (!std::isfinite(slope)) continue;
+        sum += weight[b] * slope * slope;
+        all += weight[b];
+    }
+    return all > 0 ? beyond * std::sqrt(sum / all) : 0;
+}
+
 ChamberFill chamber_fill(const Study& study, const Design& design) {
     return chamber_fill_of_layer(study, design, judged_number(study));
 }

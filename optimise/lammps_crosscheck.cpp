@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numeric>
 
 #include "dem/gradation.h"
 #include "dem/stage.h"
@@ -80,6 +81,31 @@ void spread_between(const CrosscheckEngine& engine, std::size_t bin, double& squ
     degrees += count - 1;
 }
 
+/// gi_p_value of the beds' differences, bin by bin (one row a bed; NaN where one engine laid nothing).
+double chance_of(const std::vector<std::vector<double>>& differences) {
+    const std::size_t beds = differences.size();
+    if (beds == 0 || beds > 20) return std::numeric_limits<double>::quiet_NaN();
+    const auto size = [&](std::uint32_t negative) {
+        double squares = 0;
+        for (std::size_t b = 0; b < differences.front().size(); ++b) {
+            double sum = 0;
+            int count = 0;
+            for (std::size_t k = 0; k < beds; ++k) {
+                if (!std::isfinite(differences[k][b])) continue;
+                sum += (negative >> k & 1) ? -differences[k][b] : differences[k][b];
+                ++count;
+            }
+            if (count > 0) squares += std::pow(sum / count, 2);
+        }
+        return squares;
+    };
+    const std::uint32_t patterns = std::uint32_t{1} << (beds - 1);  // the other half are their mirror images
+    const double seen = size(0) * (1 - 1e-12);
+    std::uint32_t as_large = 0;
+    for (std::uint32_t pattern = 0; pattern < patterns; ++pattern) as_large += size(pattern) >= seen;
+    return double(as_large) / patterns;
+}
+
 /// Everything that is said of all beds together.
 void compare(Crosscheck& result) {
     add_up(result.ours);
@@ -124,12 +150,14 @@ void compare_gradation(Crosscheck& result) {
     const std::size_t beds = std::min(result.ours.runs.size(), result.lammps.runs.size());
     double squares = 0, sum = 0, squares_of_means = 0, noise_squares = 0;
     int count = 0, bins = 0, degrees = 0;
+    std::vector<std::vector<double>> differences(beds);
     for (std::size_t b = 0; b < result.weight.size(); ++b) {
         if (!(result.weight[b] > 0)) continue;
         double bin_sum = 0;
         int bin_count = 0;
         for (std::size_t k = 0; k < beds; ++k) {
             const double difference = result.lammps.runs[k].gi[b] - result.ours.runs[k].gi[b];
+            differences[k].push_back(difference);
             if (!std::isfinite(difference)) continue;
             squares += difference * difference;
             bin_sum += difference;
@@ -148,7 +176,22 @@ void compare_gradation(Crosscheck& result) {
     result.gi_rmse_of_means = bins > 0 ? std::sqrt(squares_of_means / bins) : unknown;
     result.gi_bias = count > 0 ? sum / count : unknown;
     result.noise_rms = degrees > 0 ? std::sqrt(noise_squares / degrees) : unknown;
-    result.gradation_agrees = result.gi_rmse <= kNoiseAllowed * result.noise_rms;
+    std::vector<double> bias;  // bed by bed
+    for (const std::vector<double>& of_bed : differences) {
+        double of_bins = 0;
+        int finite = 0;
+        for (const double difference : of_bed)
+            if (std::isfinite(difference)) of_bins += difference, ++finite;
+        if (finite > 0) bias.push_back(of_bins / finite);
+    }
+    double scatter = 0;
+    const double n = double(bias.size()), middle = std::accumulate(bias.begin(), bias.end(), 0.0) / n;
+    for (const double one : bias) scatter += (one - middle) * (one - middle);
+    result.gi_bias_error = bias.size() > 1 ? std::sqrt(scatter / (n - 1) / n) : unknown;
+    result.gi_p_value = chance_of(differences);
+    result.gradation_agrees = int(beds) >= kBedsToJudge && std::isfinite(result.gi_p_value)
+                                  ? result.gi_p_value >= kDiffersBelow
+                                  : result.gi_rmse <= kNoiseAllowed * result.noise_rms;
     double heap_squares = 0, peak = 0;
     int heap_count = 0;
     for (std::size_t k = 0; k < beds; ++k) {

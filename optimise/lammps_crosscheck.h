@@ -68,6 +68,11 @@ struct Crosscheck {
     double gi_rmse = 0;
     double gi_rmse_of_means = 0;  ///< the same of the means over the beds
     double gi_bias = 0;           ///< mean of the difference
+    double gi_bias_error = 0;     ///< its standard error, from bed to bed; NaN with one bed
+    /// Share of the ways to give each bed's difference a sign in which gi_rmse_of_means comes out as large as
+    /// it did (exact test of paired samples): chance, if the engines do the same. Never below 2^(1 - beds).
+    /// NaN without beds or with more than 20.
+    double gi_p_value = 0;
     /// Standard deviation of one run's GI between beds: rms over counting bins and both engines.
     double noise_rms = 0;
     double heap_rmse = 0;    ///< of the solid depth, over beds and bins, relative to its peak
@@ -75,9 +80,12 @@ struct Crosscheck {
     bool forces_agree = false, gradation_agrees = false;
 };
 
-/// gi_rmse may be this many times noise_rms. Two runs that share nothing but the distribution differ by
-/// sqrt(2) of it; the rest allows for three seeds.
+/// With few beds gi_rmse may be this many times noise_rms. Two runs that share nothing but the distribution
+/// differ by sqrt(2) of it on the mean, and three beds scatter widely about that: a flag, no proof. From
+/// kBedsToJudge on gi_p_value decides, which can then fall below kDiffersBelow.
 inline constexpr double kNoiseAllowed = 1.5;
+inline constexpr int kBedsToJudge = 6;
+inline constexpr double kDiffersBelow = 0.05;
 
 /// Where in the study the comparison stands: scene of one seed.
 Scene crosscheck_scene(const Study& study, const CrosscheckOptions& options, std::uint64_t seed);

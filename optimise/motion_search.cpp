@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "optimise/bounded_search.h"
+#include "optimise/chamber_fill.h"
 #include "optimise/joined.h"
 #include "optimise/motion.h"
 
@@ -221,6 +222,8 @@ Evaluation MotionSearch::nested(const Design& motion, OriginMap& map) {
         if (fit.ok) design = fit.design;
     }
     Evaluation evaluation = run_.map.quick(design, map);
+    evaluation.objective =
+        std::hypot(evaluation.objective, step_doubt(study_, design, evaluation.profile, evaluation.weight));
     evaluation.objective += kBrokenPrice * broken(constraint_states(study_, design));
     return evaluation;
 }

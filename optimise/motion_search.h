@@ -13,7 +13,9 @@
 // The first points are the start; the motion whose heap turns over most nearly kBestTurnovers times on its
 // way to the part; then corners of the box, the furthest from all before first. Doses of the two chambers,
 // where both are free, act through their mean, which moves grains, and through their ratio, which to first
-// order only weighs the chambers (chamber_fill.h): the ratio is searched with the labels.
+// order only weighs the chambers (chamber_fill.h): the ratio is searched with the labels. A step between
+// their levels of more than a grain flows sideways, which no strip shows: its doubt (step_doubt) counts
+// against it.
 #pragma once
 #include <functional>
 #include <string>

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "dem/random.h"
 #include "dem/stage.h"
 #include "optimise/lammps_crosscheck.h"
 #include "optimise/lammps_law.h"
@@ -284,6 +285,46 @@ TEST(Crosscheck, compares_bed_by_bed_and_takes_the_noise_from_between_the_beds) 
     // squares about the mean of two: half the squared difference; bin 3 of ours has one bed only
     EXPECT_NEAR(result.noise_rms, std::sqrt((0.04 / 2 + 0 + 0.04 / 2 + 0.16 / 2 + 0.01 / 2) / 5), 1e-15);
     EXPECT_EQ(result.gradation_agrees, result.gi_rmse <= 1.5 * result.noise_rms);
+}
+
+TEST(Crosscheck, chance_is_told_from_a_difference_by_the_signs_of_the_beds) {
+    Random random(8);
+    const auto beds = [&](int count, double shift) {
+        Crosscheck result;
+        result.weight = {1, 1, 0, 1};
+        for (int k = 0; k < count; ++k) {
+            result.ours.runs.push_back(
+                run_with({0.2 + 0.03 * random.normal(), 0.5 + 0.03 * random.normal(), 9.0, 0.8}));
+            result.lammps.runs.push_back(run_with(
+                {0.2 + 0.03 * random.normal() + shift, 0.5 + 0.03 * random.normal() + shift, -9.0, 0.8}));
+        }
+        compare_gradation(result);
+        return result;
+    };
+    // one sign in all beds: of 2^(n - 1) patterns only the seen one gives so large a mean
+    const Crosscheck apart = beds(6, 0.3);
+    EXPECT_EQ(apart.gi_p_value, 1.0 / 32);
+    EXPECT_FALSE(apart.gradation_agrees);
+    EXPECT_NEAR(apart.gi_bias, 0.2, 0.03);
+    EXPECT_NEAR(apart.gi_bias_error, 0.02 / std::sqrt(6.0), 0.01);  // sqrt(2 + 2) 0.03 / 3 bins a bed
+    // the same in both: p is uniform, so that one run in twenty is called different
+    int different = 0;
+    double sum = 0;
+    constexpr int kTries = 400;
+    for (int k = 0; k < kTries; ++k) {
+        const Crosscheck same = beds(8, 0);
+        different += !same.gradation_agrees;
+        sum += same.gi_p_value;
+    }
+    EXPECT_NEAR(sum / kTries, 0.5, 4 * 0.29 / std::sqrt(double(kTries)));
+    EXPECT_NEAR(different / double(kTries), kDiffersBelow,
+                4 * std::sqrt(kDiffersBelow * (1 - kDiffersBelow) / kTries));
+    // too few to tell anything by their signs: the ratio is looked at instead
+    const Crosscheck few = beds(3, 0.3);
+    EXPECT_EQ(few.gi_p_value, 0.25);
+    EXPECT_FALSE(few.gradation_agrees);
+    EXPECT_TRUE(std::isnan(beds(1, 0).gi_bias_error));
+    EXPECT_TRUE(std::isnan(beds(0, 0).gi_p_value));
 }
 
 TEST(Crosscheck, heap_shape_is_the_solid_ahead_of_the_face_and_above_the_edge) {

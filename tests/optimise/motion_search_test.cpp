@@ -118,6 +118,28 @@ TEST(ChamberDoses, that_are_equal_leave_no_step_not_even_a_rounding) {
     }
 }
 
+TEST(ChamberDoses, are_doubted_by_what_their_step_may_carry_across) {
+    const Study study = coupon();  // rises by 120 um for a dose of 1; D50 40 um
+    Design design = start_design(study);
+    GradationProfile profile;
+    const double slope = 900;  // per metre
+    for (int b = 0; b < study.bins.count; ++b) {
+        profile.y_m.push_back(study.bins.centre(b));
+        profile.gi.push_back(1 - slope * study.bins.centre(b));
+    }
+    std::vector<double> weight(profile.gi.size(), 1.0);
+    for (const double tilt : {-0.3, 0.0, 0.16, 0.25, 0.4}) {
+        design.dose = {1 + tilt, 1 - tilt};
+        const double beyond = std::max(0.0, 2 * std::fabs(tilt) * 120e-6 - 40e-6);
+        EXPECT_NEAR(step_doubt(study, design, profile, weight), slope * beyond, 1e-9) << tilt;
+    }
+    for (std::size_t b = 0; b < weight.size(); ++b)  // where nothing is judged there is nothing to doubt
+        if (b >= weight.size() / 2) weight[b] = 0, profile.gi[b] = std::nan("");
+    EXPECT_NEAR(step_doubt(study, design, profile, weight), slope * 56e-6, 1e-9);
+    profile.gi.assign(profile.gi.size(), 0.5);
+    EXPECT_EQ(step_doubt(study, design, profile, std::vector(profile.gi.size(), 1.0)), 0);
+}
+
 TEST(ChamberDoses, that_only_trade_powder_cost_no_new_map) {
     Maps maps(coupon(), {});
     Design design = start_design(maps.study);
