@@ -96,7 +96,6 @@ void Engine::archive(Archive& to) {
     to.value(steps_since_near_);
     to.value(lists_valid_);
     to.value(first_kick_);
-    to.value(constants_valid_);
     to.value(max_overlap_seen_);
     to.value(built_from_);
     to.value(built_error_);

@@ -4,6 +4,7 @@
 // for many steps and the law sees some pairs that do not touch instead.
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -62,7 +63,7 @@ void Engine::KernelOf<T>::write_records() {
 
 template <class T>
 void Engine::KernelOf<T>::carry_history() {
-    // Kept contacts (and their constants) move to the new candidate numbers. Slot code: s >= 0 same
+    // Kept contacts move to the new candidate numbers. Slot code: s >= 0 same
     // orientation, -2 - s turned round, -1 none.
     const auto& new_index = e.new_index_;
     const std::size_t known = motion.empty() ? 0 : motion.size() - 2;
@@ -101,12 +102,45 @@ void Engine::KernelOf<T>::carry_history() {
 }
 
 template <class T>
+void Engine::KernelOf<T>::keep_springs() {
+    // One list of pairs and no copy of it: the next one is written over it, and only what a contact remembers
+    // is put aside, in the memory of the sums. Where pairs come and go the copy was a quarter of all memory.
+    const int each = has_rolls ? 6 : 3;
+    const auto count = static_cast<std::int64_t>(tiles.size());
+    tiles_before.resize(tiles.size());
+#pragma omp parallel for schedule(static) num_threads(e.threads_)
+    for (std::int64_t k = 0; k < count; ++k) {
+        std::uint32_t touched = 0;
+        for (int lane = 0; lane < W; ++lane)
+            touched |= static_cast<std::uint32_t>(tiles[k].touching[lane] > 0) << lane;
+        tiles_before[k].touched = touched;
+    }
+    std::int32_t first = 0;
+    for (TileBefore& tile : tiles_before) {
+        tile.first = first;
+        first += std::popcount(tile.touched);
+    }
+    const std::size_t room = sizeof(Record) / sizeof(S);
+    sums.resize(std::max(sums.size(), (static_cast<std::size_t>(first) * each + room - 1) / room));
+    S* const springs = reinterpret_cast<S*>(sums.data());
+#pragma omp parallel for schedule(static) num_threads(e.threads_)
+    for (std::int64_t k = 0; k < count; ++k) {
+        S* to = springs + static_cast<std::size_t>(tiles_before[k].first) * each;
+        for (int lane = 0; lane < W; ++lane) {
+            if (!(tiles_before[k].touched >> lane & 1)) continue;
+            for (int x = 0; x < 3; ++x) *to++ = tiles[k].xi[x][lane];
+            if (has_rolls)
+                for (int x = 0; x < 3; ++x) *to++ = rolls[k].angle[x][lane];
+        }
+    }
+}
+
+template <class T>
 void Engine::KernelOf<T>::rebuild_near() {
     const auto& s = e.state_;
     const std::size_t n = s.size();
     if (e.candidate_slot_.size() != e.candidate_.size()) e.candidate_slot_.assign(e.candidate_.size(), -1);
-    tiles.swap(old_tiles);
-    rolls.swap(old_rolls);
+    keep_springs();
     keep.resize(e.candidate_.size());
     park_first.assign(n + 1, 0);
     const double period = e.options_.period_y;
@@ -118,7 +152,7 @@ void Engine::KernelOf<T>::rebuild_near() {
     auto touching_before = [&](std::int32_t code) {
         if (code == -1) return false;
         const std::size_t slot = code >= 0 ? code : -2 - code;
-        return old_tiles[slot / W].touching[slot % W] > 0;
+        return (tiles_before[slot / W].touched >> slot % W & 1) != 0;
     };
     blocks.assign((n + kBlock - 1) / kBlock, Block{});
 #pragma omp parallel for schedule(dynamic, 2) num_threads(e.threads_)
@@ -181,6 +215,8 @@ void Engine::KernelOf<T>::rebuild_near() {
                 for (int k = 0; k < 3; ++k) rolls[slot / W].angle[k][lane] = 0;
         }
     };
+    const S* const springs = reinterpret_cast<const S*>(sums.data());
+    const int each = has_rolls ? 6 : 3;
     const auto fill = [&](std::size_t i, std::size_t& next_touching, std::size_t& next_apart) {
         std::int32_t& reach = blocks[i / kBlock].reach;
         std::size_t next_parked = active_tiles * W + park_first[i];
@@ -198,32 +234,28 @@ void Engine::KernelOf<T>::rebuild_near() {
             t.i[lane] = static_cast<std::int32_t>(i);
             t.j[lane] = j;
             const std::int32_t code = e.candidate_slot_[c];
-            const std::size_t old = code >= 0 ? code : -2 - code;
-            const PairTile* o = code != -1 ? &old_tiles[old / W] : nullptr;
-            const int from = static_cast<int>(old % W);
-            if (o && e.constants_valid_) {
-                t.radius[lane] = o->radius[from];
-                t.mass[lane] = o->mass[from];
-                t.e_star[lane] = o->e_star[from];
-                t.g_star8[lane] = o->g_star8[from];
-                t.jkr_radius[lane] = o->jkr_radius[from];
-            } else {
-                const double ri = s.radius[i], rj = s.radius[j];
-                const double r = ri * rj / (ri + rj);
-                const double mi = s.mass[i], mj = s.mass[j];
-                const auto& pair = e.pairs_[s.material[i] * material_count + s.material[j]];
-                t.radius[lane] = S(r);
-                t.mass[lane] = S(s.fixed[i] ? mj : s.fixed[j] ? mi : mi * mj / (mi + mj));
-                t.e_star[lane] = S(pair.e_star);
-                t.g_star8[lane] = S(pair.g_star8);
-                t.jkr_radius[lane] = S(std::cbrt(2 * std::numbers::pi * e.adhesion_ * r * r / pair.e_star));
+            const S* spring = nullptr;
+            if (keep[c] != kApart) {
+                const std::size_t old = code >= 0 ? code : -2 - code;
+                const TileBefore& before = tiles_before[old / W];
+                const std::uint32_t ahead = before.touched & ((std::uint32_t{1} << old % W) - 1);
+                spring = springs + static_cast<std::size_t>(before.first + std::popcount(ahead)) * each;
             }
-            t.touching[lane] = o ? o->touching[from] : S(0);
+            const double ri = s.radius[i], rj = s.radius[j];
+            const double r = ri * rj / (ri + rj);
+            const double mi = s.mass[i], mj = s.mass[j];
+            const auto& pair = e.pairs_[s.material[i] * material_count + s.material[j]];
+            t.radius[lane] = S(r);
+            t.mass[lane] = S(s.fixed[i] ? mj : s.fixed[j] ? mi : mi * mj / (mi + mj));
+            t.e_star[lane] = S(pair.e_star);
+            t.g_star8[lane] = S(pair.g_star8);
+            t.jkr_radius[lane] = S(std::cbrt(2 * std::numbers::pi * e.adhesion_ * r * r / pair.e_star));
+            t.touching[lane] = S(spring ? 1 : 0);
             const S turn = code >= 0 ? S(1) : S(-1);  // springs change sign with the pair's orientation
-            for (int k = 0; k < 3; ++k) t.xi[k][lane] = o ? turn * o->xi[k][from] : S(0);
+            for (int k = 0; k < 3; ++k) t.xi[k][lane] = spring ? turn * spring[k] : S(0);
             if (has_rolls)
                 for (int k = 0; k < 3; ++k)
-                    rolls[slot / W].angle[k][lane] = o ? turn * old_rolls[old / W].angle[k][from] : S(0);
+                    rolls[slot / W].angle[k][lane] = spring ? turn * spring[3 + k] : S(0);
             e.candidate_slot_[c] = static_cast<std::int32_t>(slot);
             if (keep[c] == kParked) continue;
             reach = std::max(reach, j);
@@ -563,7 +595,7 @@ std::size_t Engine::KernelOf<T>::contacts_beyond(double limit) const {
 template <class T>
 double Engine::KernelOf<T>::memory_bytes() const {
     auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-    return bytes(motion) + bytes(tiles) + bytes(old_tiles) + bytes(rolls) + bytes(old_rolls) + bytes(walls) +
+    return bytes(motion) + bytes(tiles) + bytes(tiles_before) + bytes(rolls) + bytes(walls) +
            bytes(old_walls) + bytes(sums) + bytes(kept) + bytes(wall_first) + bytes(keep) +
            bytes(park_first) + bytes(blocks);
 }

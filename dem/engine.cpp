@@ -111,7 +111,6 @@ void Engine::set_material(std::size_t i, int material) {
     s.moving[i].inverse_mass = 1 / s.mass[i];
     s.moving[i].inverse_inertia = 1 / (0.4 * s.mass[i] * s.radius[i] * s.radius[i]);
     s.material[i] = static_cast<std::uint8_t>(material);
-    constants_valid_ = false;
     lists_valid_ = false;
 }
 
@@ -284,7 +283,6 @@ long Engine::advance(long steps) {
             const double middle = omp_get_wtime();
             times_.candidates += middle - start;
             kernel_->rebuild_near();
-            constants_valid_ = true;
             if (rebuild || !lists_valid_) kernel_->write_records();
             lists_valid_ = true;
             travel_ = 0;

@@ -201,7 +201,6 @@ class Engine {
     double travel_ = 0;      ///< largest share of a reach used up since the near list was made; 1 ends it
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;
-    bool constants_valid_ = true;  ///< false: pair constants are computed anew at the next refresh
     double max_overlap_seen_ = 0;
     std::string failed_;
     EngineTimes times_;

@@ -116,10 +116,19 @@ struct Engine::KernelOf final : Engine::Kernel {
     Engine& e;
     const bool has_rolls;
     AlignedVector<Motion> motion;
-    AlignedVector<PairTile> tiles, old_tiles;
-    AlignedVector<RollTile> rolls, old_rolls;
+    AlignedVector<PairTile> tiles;
+    AlignedVector<RollTile> rolls;
     AlignedVector<WallTile> walls, old_walls;
-    AlignedVector<Record> sums;  ///< by grain; zero between steps, but for grains that do not move
+    /// By grain; zero between steps, but for grains that do not move. While the near list is made anew their
+    /// memory holds the springs of the contacts.
+    AlignedVector<Record> sums;
+    /// Of a tile of the near list before: which of its pairs touched, and how many did in the tiles ahead of
+    /// it.
+    struct TileBefore {
+        std::int32_t first;
+        std::uint32_t touched;
+    };
+    std::vector<TileBefore> tiles_before;
     AlignedVector<Handed> kept;  ///< of the tails, tile by tile
     std::size_t active_slots = 0,
                 parked_slots = 0;  ///< parked: both ends asleep or fixed, history kept, not computed
@@ -141,6 +150,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     Predicted predicted(std::size_t i) const override;
     void scale_motion(double factor) override;
     void rebuild_near() override;
+    /// Leaves `tiles_before` and, in `sums`, the springs of what touches: the tiles may be overwritten.
+    void keep_springs();
     void rebuild_walls();
     void carry_history() override;
     long run(long steps) override;

@@ -398,6 +398,19 @@ TEST(Reductions, an_early_stop_spares_steps_and_lays_the_same_grains_but_for_the
     EXPECT_NE(scene.canonical_text(), tiny_scene().canonical_text()) << "the caches must tell them apart";
 }
 
+TEST(Bench, a_flowing_grain_takes_no_more_than_400_bytes) {
+    // near pairs come and go: the list is made anew many times, in its own place
+    BenchOptions options;
+    options.scene = smallest_scene();
+    options.grains = {1200};
+    options.states = {"flowing"};
+    options.steps = 300;
+    const BenchCase flowing = run_bench(options).cases.at(0);
+    EXPECT_LT(flowing.steps_per_near_list, 60);
+    EXPECT_GT(flowing.near_pairs_per_grain, 1.5);
+    EXPECT_LE(flowing.bytes_per_grain, 400);
+}
+
 TEST(Bench, a_large_bed_is_copies_of_a_small_one_without_a_seam) {
     BenchOptions options;
     options.scene = smallest_scene();
