@@ -172,6 +172,25 @@ void walls(benchmark::State& state) {
     state.SetItemsProcessed(static_cast<std::int64_t>(engine.grain_steps() - before));
 }
 
+// --- the machine: what one core moves to and from memory that no cache holds; a bed of a million grains is
+// read once and half of it written in every step -----------------------------------------------------------
+
+template <bool kWrites>
+void memory(benchmark::State& state) {
+    AlignedVector<D8> row(std::size_t{1} << 22, D8{1, 1, 1, 1, 1, 1, 1, 1});  // 256 MB
+    for ([[maybe_unused]] auto _ : state) {
+        D8 sum[4] = {};
+        for (std::size_t k = 0; k < row.size(); k += 4)
+            for (std::size_t lane = 0; lane < 4; ++lane) {
+                sum[lane] += row[k + lane];
+                if constexpr (kWrites) row[k + lane] *= 0.5;
+            }
+        benchmark::DoNotOptimize(sum);
+        benchmark::ClobberMemory();
+    }
+    state.SetBytesProcessed(state.iterations() * std::int64_t(row.size() * sizeof(D8)) * (kWrites ? 2 : 1));
+}
+
 BENCHMARK(law<double, false, RollingModel::none>);
 BENCHMARK(law<double, true, RollingModel::constant_torque>);
 BENCHMARK(law<WideFloat, false, RollingModel::none>);
@@ -198,6 +217,8 @@ BENCHMARK(stage<&EngineTimes::near_list>)
     ->UseManualTime();
 BENCHMARK(lists_from_scratch);
 BENCHMARK(walls)->UseManualTime();
+BENCHMARK(memory<false>);
+BENCHMARK(memory<true>);
 
 }  // namespace
 }  // namespace gradwright
