@@ -213,12 +213,14 @@ void print_crosscheck(const Study& study, const Crosscheck& result) {
             fmt::print("  GI at y = {:.2f} mm                     {:>10.3f} {:>10.3f}\n", 1e3 * result.y_m[b],
                        ours[b], theirs[b]);
     fmt::print(
-        "\nGI(y), LAMMPS - gradwright on the same bed: rms {:.4f} (of the means {:.4f}, bias {:+.4f} +- "
-        "{:.4f})\n",
-        result.gi_rmse, result.gi_rmse_of_means, result.gi_bias, result.gi_bias_error);
+        "\nGI(y), LAMMPS - gradwright on the same bed: rms {:.4f} (of the means {:.4f}, bias {:+.4f})\n",
+        result.gi_rmse, result.gi_rmse_of_means, result.gi_bias);
     const std::size_t beds = result.lammps.runs.size();
-    fmt::print("one engine between beds: rms {:.4f}; ratio {:.2f}; by chance in a share {:.2g} of cases\n",
-               result.noise_rms, result.gi_rmse / result.noise_rms, result.gi_p_value);
+    fmt::print(
+        "standard error of the bias {:.4f}; one engine between beds: rms {:.4f}, ratio {:.2f}; by chance in "
+        "a "
+        "share {:.2g} of cases\n",
+        result.gi_bias_error, result.noise_rms, result.gi_rmse / result.noise_rms, result.gi_p_value);
     if (beds >= std::size_t(kBedsToJudge))
         fmt::print("the gradation {}: {} beds, chance below {} would tell the engines apart\n",
                    result.gradation_agrees ? "agrees" : "DIFFERS", beds, kDiffersBelow);
@@ -347,9 +349,10 @@ void add_crosscheck(CLI::App& app, Call& call) {
     verb->add_option("--ranks", command->ranks, "MPI processes of LAMMPS; default as many as threads")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
-    verb->add_option("--seeds", command->seeds, "Beds, spread by both engines; default 3")
+    verb->add_option("--seeds", command->seeds,
+                     "Beds, spread by both engines; default 3, six tell engines apart")
         ->type_name("N")
-        ->check(CLI::Range(2, 1000));
+        ->check(CLI::Range(2, kMostBeds));
     verb->add_flag(
         "--study-law", command->study_law,
         "Ours with the study's own rolling and adhesive walls; default: the law nearest to LAMMPS's");

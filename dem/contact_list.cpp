@@ -105,7 +105,7 @@ template <class T>
 void Engine::KernelOf<T>::keep_springs() {
     // One list of pairs and no copy of it: the next one is written over it, and only what a contact remembers
     // is put aside, in the memory of the sums. Where pairs come and go the copy was a quarter of all memory.
-    const int each = has_rolls ? 6 : 3;
+    const int each = numbers_per_spring();
     const auto count = static_cast<std::int64_t>(tiles.size());
     tiles_before.resize(tiles.size());
 #pragma omp parallel for schedule(static) num_threads(e.threads_)
@@ -216,7 +216,7 @@ void Engine::KernelOf<T>::rebuild_near() {
         }
     };
     const S* const springs = reinterpret_cast<const S*>(sums.data());
-    const int each = has_rolls ? 6 : 3;
+    const int each = numbers_per_spring();
     const auto fill = [&](std::size_t i, std::size_t& next_touching, std::size_t& next_apart) {
         std::int32_t& reach = blocks[i / kBlock].reach;
         std::size_t next_parked = active_tiles * W + park_first[i];
@@ -282,97 +282,6 @@ void Engine::KernelOf<T>::rebuild_near() {
     }
     force_on_fixed_by_block.assign(blocks.size(), {});
     share_out();
-}
-
-template <class T>
-void Engine::KernelOf<T>::share_out() {
-    const auto count = static_cast<std::int32_t>(blocks.size());
-    // in tiles that touch, 120 ns: one in which nothing does takes 35 ns, a wall contact 15 ns and its tile
-    // 120 ns, a grain 4 ns, handing a tile over beyond the share 40 ns
-    const auto cost_of_pairs = [&](std::int32_t b) {
-        const std::int32_t all = blocks[b].end_tile - blocks[b].first_tile,
-                           live = (blocks[b].own_touching + W - 1) / W;
-        return live + 0.3 * (all - live);
-    };
-    const auto weight = [&](std::int32_t b) {
-        const Block& block = blocks[b];
-        return cost_of_pairs(b) + (block.end_wall - block.first_wall) +
-               0.125 * (block.wall_end - block.first_wall * W) +
-               0.035 * (block.end_awake - block.first_awake);
-    };
-    double all = 0;
-    for (std::int32_t b = 0; b < count; ++b) all += weight(b);
-    const auto tiles_of = [&](std::int32_t from, std::int32_t to) {
-        return from < to ? blocks[to - 1].end_tile - blocks[from].first_tile : 0;
-    };
-    const auto cost_of = [&](const Share& share) {
-        double sum = 0;
-        for (std::int32_t b = share.tail; b < share.end; ++b)
-            sum += (blocks[b].reach >= first_grain(share.end) ? 1.35 : 1.0) * cost_of_pairs(b);
-        return sum;
-    };
-    // False when a share's pairs reach beyond its neighbour: two would then add to the same sums at once.
-    const auto cut = [&](std::int32_t threads) {
-        shares.assign(threads, Share{});
-        std::int32_t next = 0;
-        double done = 0, wanted = 0, longest = 0;  // tail, in time
-        if (static_cast<std::int32_t>(pace.size()) != threads) pace.assign(threads, 1.0);
-        for (std::int32_t t = 0; t < threads; ++t) {
-            shares[t].first = next;
-            wanted += all * pace[t] / std::accumulate(pace.begin(), pace.end(), 0.0);
-            while (next < count && (t == threads - 1 || done + 0.5 * weight(next) < wanted))
-                done += weight(next++);
-            shares[t].end = next;
-        }
-        for (std::int32_t t = 0; t < threads; ++t) {
-            Share& share = shares[t];
-            share.tail = share.end;
-            for (std::int32_t b = share.end; b-- > share.first;) {
-                if (blocks[b].reach >= first_grain(share.end)) share.tail = b;
-                if (t + 1 < threads && blocks[b].reach >= first_grain(shares[t + 1].end)) return false;
-            }
-            longest = std::max(longest, cost_of(share) / pace[t]);
-        }
-        // While the longest tail is computed the others do not wait: theirs is made as long.
-        for (std::int32_t t = 0; t < threads; ++t) {
-            Share& share = shares[t];
-            while (share.tail > share.first &&
-                   cost_of(share) + 0.5 * cost_of_pairs(share.tail - 1) < longest * pace[t])
-                --share.tail;
-        }
-        return true;
-    };
-    // fewer grains than this per thread cost more in waiting than they win
-    auto threads = static_cast<std::int32_t>(std::clamp<std::size_t>(e.awake_.size() / 200, 1, e.threads_));
-    while (!cut(threads)) --threads;
-    // The energy account reads after the step what every pair did.
-    if (e.options_.energy_account)
-        for (Share& share : shares) share.tail = share.first;
-    std::int32_t kept_tiles = 0;
-    for (Share& share : shares) {
-        share.kept = kept_tiles;
-        kept_tiles += tiles_of(share.tail, share.end);
-        share.cost = 0;
-        for (std::int32_t b = share.first; b < share.end; ++b) share.cost += weight(b);
-    }
-    kept.resize(kept_tiles);
-    sums.assign(e.state_.size() + 2, Record{});
-}
-
-template <class T>
-void Engine::KernelOf<T>::learn_pace(const std::vector<double>& busy) {
-    const std::size_t count = shares.size();
-    if (count < 2 || pace.size() != count) return;
-    double mean = 0;
-    std::vector<double> rate(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        rate[k] = shares[k].cost / busy[k];
-        if (!(busy[k] > 0) || !(rate[k] > 0)) return;
-        mean += rate[k] / static_cast<double>(count);
-    }
-    constexpr double kTrust = 0.25;  // of one list's steps, some milliseconds
-    for (std::size_t k = 0; k < count; ++k)
-        pace[k] = std::clamp(pace[k] + kTrust * (rate[k] / mean - pace[k]), 0.25, 4.0);
 }
 
 template <class T>

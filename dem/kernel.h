@@ -152,6 +152,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     void rebuild_near() override;
     /// Leaves `tiles_before` and, in `sums`, the springs of what touches: the tiles may be overwritten.
     void keep_springs();
+    int numbers_per_spring() const { return has_rolls ? 6 : 3; }  ///< tangential, then rolling
     void rebuild_walls();
     void carry_history() override;
     long run(long steps) override;

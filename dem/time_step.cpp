@@ -107,7 +107,10 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const auto count = static_cast<int>(shares.size());
     // Two sets, by turns: between two steps without tails stands one barrier, and a thread that is past it
     // may write its next one while another still reads.
-    std::vector<double> tops(static_cast<std::size_t>(count) * 16, 0.0);
+    struct alignas(64) Top {
+        double of[2] = {0, 0};
+    };
+    std::vector<Top> tops(static_cast<std::size_t>(count));
     std::vector<double> busy(static_cast<std::size_t>(count), 0.0);
     long done = 0;
     double travel = e.travel_, law_seconds = 0,
@@ -191,14 +194,14 @@ long Engine::KernelOf<T>::run_with(long steps) {
                         std::fill(sums.begin() + first_grain(b), sums.begin() + first_grain(b + 1), Record{});
                     lap(grain_seconds);
                 }
-                tops[s * 16 + step % 2 * 8] = top;
+                tops[s].of[step % 2] = top;
             }
             if (count > 1) {
                 watch(since);
 #pragma omp barrier
             }
             double top = 0;
-            for (int k = 0; k < count; ++k) top = std::max(top, tops[k * 16 + step % 2 * 8]);
+            for (const Top& one : tops) top = std::max(top, one.of[step % 2]);
             top = std::sqrt(top);
             my_travel += dt * std::max(top, rest_rate);
             my_done = step + 1;

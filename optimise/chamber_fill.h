@@ -67,7 +67,8 @@ ChamberFill chamber_fill(const Study& study, const Design& design);
 /// Doubt about a map's profile `gi` at `y` [m] where the chambers stand at unequal levels: what is higher
 /// than the other side by more than one grain (D50) flows sideways, nobody knows how far short of as far as
 /// it is high. rms over the bins of |dGI/dy| (step - D50), by `weight`; 0 below one grain [-]. An estimate,
-/// to weigh designs with, held against one spread (docs/search.md): 0.18 for a step of 126 um that added 0.16.
+/// to weigh designs with, held against one spread (docs/search.md): 0.18 for a step of 126 um that added
+/// 0.16.
 double step_doubt(const Study& study, const Design& design, const GradationProfile& profile,
                   const std::vector<double>& weight);
 /// For layer `number` from 1.

@@ -84,7 +84,7 @@ void spread_between(const CrosscheckEngine& engine, std::size_t bin, double& squ
 /// gi_p_value of the beds' differences, bin by bin (one row a bed; NaN where one engine laid nothing).
 double chance_of(const std::vector<std::vector<double>>& differences) {
     const std::size_t beds = differences.size();
-    if (beds == 0 || beds > 20) return std::numeric_limits<double>::quiet_NaN();
+    if (beds == 0 || beds > std::size_t(kMostBeds)) return std::numeric_limits<double>::quiet_NaN();
     const auto size = [&](std::uint32_t negative) {
         double squares = 0;
         for (std::size_t b = 0; b < differences.front().size(); ++b) {
@@ -189,7 +189,7 @@ void compare_gradation(Crosscheck& result) {
     for (const double one : bias) scatter += (one - middle) * (one - middle);
     result.gi_bias_error = bias.size() > 1 ? std::sqrt(scatter / (n - 1) / n) : unknown;
     result.gi_p_value = chance_of(differences);
-    result.gradation_agrees = int(beds) >= kBedsToJudge && std::isfinite(result.gi_p_value)
+    result.gradation_agrees = std::isfinite(result.gi_p_value) && int(beds) >= kBedsToJudge
                                   ? result.gi_p_value >= kDiffersBelow
                                   : result.gi_rmse <= kNoiseAllowed * result.noise_rms;
     double heap_squares = 0, peak = 0;

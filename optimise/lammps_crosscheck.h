@@ -71,7 +71,7 @@ struct Crosscheck {
     double gi_bias_error = 0;     ///< its standard error, from bed to bed; NaN with one bed
     /// Share of the ways to give each bed's difference a sign in which gi_rmse_of_means comes out as large as
     /// it did (exact test of paired samples): chance, if the engines do the same. Never below 2^(1 - beds).
-    /// NaN without beds or with more than 20.
+    /// NaN without beds or with more than kMostBeds.
     double gi_p_value = 0;
     /// Standard deviation of one run's GI between beds: rms over counting bins and both engines.
     double noise_rms = 0;
@@ -85,6 +85,7 @@ struct Crosscheck {
 /// kBedsToJudge on gi_p_value decides, which can then fall below kDiffersBelow.
 inline constexpr double kNoiseAllowed = 1.5;
 inline constexpr int kBedsToJudge = 6;
+inline constexpr int kMostBeds = 20;  ///< all choices of their signs are looked at
 inline constexpr double kDiffersBelow = 0.05;
 
 /// Where in the study the comparison stands: scene of one seed.
