@@ -156,9 +156,21 @@ struct Engine::KernelOf final : Engine::Kernel {
     void rebuild_walls();
     void carry_history() override;
     long run(long steps) override;
+    /// What a sweep asks of the memory while it computes, where the grains do not fit in the cache: with
+    /// every tile an equal part of what comes next (time_step.cpp). The wide law alone does so.
+    struct Ahead {
+        std::int32_t met = 0, met_end = 0;  ///< grains that the pairs of the next blocks will meet first
+        std::int32_t own = 0, own_end = 0;  ///< grains of the next block
+        std::int32_t met_each = 0, own_each = 0;
+    };
+    /// Where `ahead` is to get to during block `b` of a share whose tail begins at `tail`.
+    void aim(Ahead& ahead, std::int32_t b, std::int32_t tail) const;
+    void fetch_grains(Ahead& ahead) const;
+    /// One half of a tile some way on: its pairs and constants, or what they remember.
+    void fetch_tile(std::int32_t tile, bool second_half) const;
     /// The block's pairs; what they do is added to the sums, or with `kept` left there, a tile each.
     template <bool kAdhesive, RollingModel kRolling>
-    void pair_pass(const Block& block, Handed* kept);
+    void pair_pass(const Block& block, Handed* kept, Ahead* ahead);
     template <bool kAdhesive, RollingModel kRolling>
     void wall_pass(const Block& block, double body_time);
     template <bool kAdhesive, RollingModel kRolling>
