@@ -16,7 +16,8 @@ namespace gradwright {
 
 // Inlined by order: GCC takes a function that only fetches for one without effect, and drops the call.
 template <class T>
-[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_tile(std::int32_t tile, bool second_half) const {
+[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_tile(std::int32_t tile,
+                                                                   bool second_half) const {
     constexpr std::int32_t kTilesAhead = 8;  // 4 and 16: the same
     constexpr std::size_t kLine = 64, kHalf = sizeof(PairTile) / 2 / kLine * kLine;
     const char* const pairs = reinterpret_cast<const char*>(tiles.data() + tile + kTilesAhead);

@@ -37,12 +37,15 @@ struct EngineOptions {
            period_z = 0;  ///< [m], for a gas without walls (small: one cell each); with period_y
     Precision precision = Precision::single_law;
     bool sleep = false;
-    double sleep_speed = 0.5e-3;   ///< grains slower than this ... [m/s]
-    double sleep_time = 0.3e-3;    ///< ... for so long, with neighbours alike, fall asleep [s]
-    double wake_speed = 1.0e-3;    ///< an awake near neighbour faster than this wakes a sleeper [m/s]
-    double skin = 0;               ///< candidate skin of two typical grains [m], 0 = from the grain size
-    double near_skin = 0;          ///< near-pair skin of two typical grains [m], 0 = from the grain size
-    int threads = 0;               ///< 0 = OpenMP's default
+    double sleep_speed = 0.5e-3;  ///< grains slower than this ... [m/s]
+    double sleep_time = 0.3e-3;   ///< ... for so long, with neighbours alike, fall asleep [s]
+    double wake_speed = 1.0e-3;   ///< an awake near neighbour faster than this wakes a sleeper [m/s]
+    double skin = 0;              ///< candidate skin of two typical grains [m], 0 = from the grain size
+    double near_skin = 0;         ///< near-pair skin of two typical grains [m], 0 = from the grain size
+    int threads = 0;              ///< 0 = OpenMP's default
+    /// More grains than this do not fit in the processor's cache: memory is asked ahead (time_step.cpp). No
+    /// number depends on it.
+    int cached_grains = 40000;
     double speed_limit = 20;       ///< faster grains mean the run has diverged [m/s]
     double remove_beyond_x = 1e9;  ///< grains past this x leave the run (overflow) [m]
     bool energy_account = false;   ///< keep an EnergyLedger: several times slower; not with `sleep`

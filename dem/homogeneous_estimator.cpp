@@ -64,8 +64,18 @@ class LabelShares {
         both_ = partition.a_between() ? 1 : 0;
     }
 
-    /// share of every bin for a grain from origin_x that travelled `way` across.
-    void of_grain(double origin_x, double way, std::vector<double>& share) {
+    /// share of every bin for grain i, and where they are mirrored half for its mirror image.
+    void of_grain(const PooledGrains& grains, std::size_t i, std::vector<double>& share) {
+        of_way(grains.origin_x[i], grains.way[i], share);
+        if (!grains.mirrored) return;
+        of_image_.resize(share.size());
+        of_way(grains.origin_x[i], -grains.way[i], of_image_);
+        for (std::size_t bin = 0; bin < share.size(); ++bin) share[bin] = 0.5 * (share[bin] + of_image_[bin]);
+    }
+
+  private:
+    /// Of a grain from origin_x that travelled `way` across.
+    void of_way(double origin_x, double way, std::vector<double>& share) {
         if (over_x_) {
             first_.of_grain(origin_x, way, bins_, options_.smoothing, share);
             if (!second_) return;
@@ -83,8 +93,6 @@ class LabelShares {
             share[bin] = sum / samples;
         }
     }
-
-  private:
     double step(double distance) const {
         if (options_.smoothing <= 0) return distance > 0 ? 1 : 0;
         const double s = std::clamp(0.5 * (1 + distance / options_.smoothing), 0.0, 1.0);
@@ -96,7 +104,7 @@ class LabelShares {
     const HomogeneousOptions& options_;
     SideOverX first_;
     std::optional<SideOverX> second_;
-    std::vector<double> of_second_;
+    std::vector<double> of_second_, of_image_;
     double both_ = 0;  ///< counted twice where A stands between the curves
     bool over_x_ = false;
 };
@@ -110,7 +118,7 @@ std::vector<BinMoments> moments_of(const PooledGrains& grains, LabelShares& shar
     std::vector<BinMoments> moments(bins.count, BinMoments(grains.layers * cuts));
     std::vector<double> share(bins.count);
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        shares.of_grain(grains.origin_x[i], grains.way[i], share);
+        shares.of_grain(grains, i, share);
         const double along = (grains.deposit_x[i] - grains.x_low) / (grains.x_high - grains.x_low);
         const int cell = grains.layer[i] * cuts + std::min(cuts - 1, static_cast<int>(along * cuts));
         const double volume = grains.volume[i];
@@ -135,7 +143,7 @@ std::vector<double> means_of(const PooledGrains& grains, LabelShares& shares, co
     std::vector<double> mean(bins.count, 0), share(bins.count), of_b(bins.count, 0);
     const bool by_powder = !grains.carries_a.empty();
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        shares.of_grain(grains.origin_x[i], grains.way[i], share);
+        shares.of_grain(grains, i, share);
         if (!by_powder || grains.carries_a[i])
             for (int bin = 0; bin < bins.count; ++bin) mean[bin] += grains.volume[i] * share[bin];
         else
@@ -222,6 +230,7 @@ PooledGrains only(const PooledGrains& grains, Take&& take) {
     part.x_low = grains.x_low;
     part.x_high = grains.x_high;
     part.layers = grains.layers;
+    part.mirrored = grains.mirrored;
     for (std::size_t i = 0; i < grains.size(); ++i) {
         if (!take(i)) continue;
         part.origin_x.push_back(grains.origin_x[i]);
@@ -260,6 +269,14 @@ PooledGrains pool_powders(std::span<const Layer> layers, std::span<const BedPowd
             pooled.carries_a.push_back(a);
         }
     }
+    return pooled;
+}
+
+PooledGrains pool_map(std::span<const Layer> layers, std::span<const double> share,
+                      std::span<const BedPowders> beds, bool alike, double x_low, double x_high) {
+    PooledGrains pooled =
+        beds.empty() ? pool_grains(layers, x_low, x_high, share) : pool_powders(layers, beds, x_low, x_high);
+    pooled.mirrored = alike && beds.empty();
     return pooled;
 }
 

@@ -35,9 +35,8 @@ inline void put(D4 from, double* to) {
 // Where the grains do not fit in the processor's cache, it is told what comes: second grains are met in no
 // order, and there are more rows than it can follow. A little at a time, in three places of every tile: a
 // million grains 39 million grain-steps/s, all of it before the tile 37, a block's worth at once 18 (the core
-// then waits for its own requests), not told 16. What does fit gains nothing, hence the bound, about 15 MB.
-constexpr std::size_t kCachedGrains = 40000;
-
+// then waits for its own requests), not told 16. What does fit gains nothing, hence `cached_grains`, about 15
+// MB.
 template <class T>
 void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) const {
     const Block& block = blocks[b];
@@ -137,7 +136,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const bool first_kick = e.first_kick_;
     const bool tails = !kept.empty();
     const double start = omp_get_wtime();
-    const bool beyond_cache = e.state_.size() > kCachedGrains;
+    const bool beyond_cache = static_cast<int>(e.state_.size()) > e.options_.cached_grains;
 #pragma omp parallel num_threads(count)
     {
         double my_travel = e.travel_, my_busy = 0;

@@ -10,6 +10,7 @@
 #include "dem/random.h"
 #include "optimise/bounded_search.h"
 #include "optimise/evaluation.h"
+#include "optimise/map_evaluator.h"
 #include "optimise/motion.h"
 
 namespace gradwright {
@@ -202,8 +203,7 @@ FitProblem::FitProblem(const Study& study, const Design& design, std::span<const
       x_drift_weight(study.objective.x_drift_weight) {
     const Footprint footprint = footprint_of(study, design);
     motion = motion_values(study, design);
-    grains = beds.empty() ? pool_grains(layers, footprint.x_low, footprint.x_high, share)
-                          : pool_powders(layers, beds, footprint.x_low, footprint.x_high);
+    grains = pool_map(layers, share, beds, moves_alike(study), footprint.x_low, footprint.x_high);
     thirds = thirds_of(grains);
     if (!beds.empty())
         for (const bool a : {true, false}) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dem/gradation.h"
+#include "dem/homogeneous_estimator.h"
 #include "optimise/study.h"
 
 namespace gradwright {
@@ -107,7 +108,11 @@ std::vector<double> drift_weights(const Study& study);
 struct BedAllowance {
     double profile, drift;  ///< what all grains of a bed share cancels in part in a difference along x
 };
-constexpr BedAllowance kBedsOverBlocksMap{3.5, 1.3}, kBedsOverBlocksPlain{2.3, 1.25};
+constexpr BedAllowance kBedsOverBlocksMap{3.5, 1.3}, kBedsOverBlocksMirrored{2.5, 2.1},
+    kBedsOverBlocksPlain{2.3, 1.25};
+inline BedAllowance beds_over_blocks(const PooledGrains& grains) {
+    return grains.mirrored ? kBedsOverBlocksMirrored : kBedsOverBlocksMap;
+}
 /// A field's cell has the blocks' variance of n columns over the whole's and shares with its row what the bed
 /// has in common: 1 + (profile - 1)/n of its blocks' variance.
 void allow_for_beds(Evaluation& evaluation, BedAllowance variance_ratio);

@@ -23,6 +23,7 @@ struct OriginMap {
     std::vector<double> share;
     /// Of a map that is read powder by powder, one for each layer: what stood in its bed. Else empty.
     std::vector<BedPowders> beds_of_layers;
+    bool alike = false;                 ///< powders that move alike: read in the mirror too
     std::vector<SpreadResult> spreads;  ///< without pictures; of several layers only: what each of them is
     std::vector<BedFacts> beds;
     Scene scene;  ///< of the first strip
@@ -34,8 +35,7 @@ struct OriginMap {
     std::string state_hash;
     /// The laid grains in a range of x as this map reads them.
     PooledGrains pooled(double x_low, double x_high) const {
-        return beds_of_layers.empty() ? pool_grains(layers, x_low, x_high, share)
-                                      : pool_powders(layers, beds_of_layers, x_low, x_high);
+        return pool_map(layers, share, beds_of_layers, alike, x_low, x_high);
     }
     double share_of(std::size_t layer) const {
         return share.empty() ? 1 / double(layers.size()) : share[layer];
@@ -58,8 +58,11 @@ class MapEvaluator : public Evaluator {
     /// map seeds.
     Evaluation evaluate(const Design& design, std::uint64_t seed) override;
     Fidelity fidelity() const override { return Fidelity::map; }
-    /// The same, not kept: for choosing between designs.
+    /// The same, not kept.
     Evaluation quoted(const Design& design);
+    /// The same for a choice between designs: what a spread with both powders is expected to show, with the
+    /// noise that its reading will have. A design whose noise is small in the mirror alone is not chosen.
+    Evaluation expected(const Design& design);
     /// Hard-label misfits and objective only, in milliseconds: for searches.
     Evaluation quick(const Design& design);
     /// Runs the strips when these motion variables are new. The reference stays valid.
@@ -68,7 +71,7 @@ class MapEvaluator : public Evaluator {
     /// any partition is the same mean of theirs. Not kept, costs no spread.
     OriginMap between(const std::vector<Design>& motions, const std::vector<double>& share);
     /// `quick` on a map of that kind.
-    Evaluation quick(const Design& design, OriginMap& map) { return with(design, map, false); }
+    Evaluation quick(const Design& design, OriginMap& map) { return with(design, map, Purpose::search); }
     /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
     /// `design`: its origins are as good as the strips'. `state_hash`: of that spread.
     void learn(const Design& design, const Layer& layer, const std::string& state_hash);
@@ -86,7 +89,8 @@ class MapEvaluator : public Evaluator {
   private:
     using Key = std::array<double, 6>;
     Key key_of(const Design& design, std::uint64_t seed) const;
-    Evaluation with(const Design& design, OriginMap& map, bool quoted);
+    enum class Purpose { search, choose, quote };
+    Evaluation with(const Design& design, OriginMap& map, Purpose purpose);
 
     /// Every layer of a run of several.
     std::vector<LaidLayer> read_layers(const Design& design, const OriginMap& map,

@@ -55,8 +55,10 @@ void add_grains(Engine& engine, int count) {
 constexpr int kGrains = 1800;
 constexpr long kSteps = 900;
 
-std::string whole_run(Precision precision, int threads) {
-    Engine engine(powder(precision, threads));
+std::string whole_run(Precision precision, int threads, bool beyond_cache = false) {
+    EngineOptions o = powder(precision, threads);
+    if (beyond_cache) o.cached_grains = 0;
+    Engine engine(o);
     add_machine(engine);
     add_grains(engine, kGrains);
     engine.start_bodies();
@@ -75,6 +77,12 @@ TEST_P(Determinism, one_two_three_and_eight_threads_leave_the_same_bits) {
     const std::string one = whole_run(GetParam(), 1);
     for (const int threads : {2, 3, 8})
         EXPECT_EQ(whole_run(GetParam(), threads), one) << threads << " threads";
+}
+
+TEST_P(Determinism, memory_asked_ahead_leaves_the_same_bits) {
+    const std::string one = whole_run(GetParam(), 1);
+    for (const int threads : {1, 3})
+        EXPECT_EQ(whole_run(GetParam(), threads, true), one) << threads << " threads";
 }
 
 TEST_P(Determinism, threads_whose_grains_never_meet_end_every_run_of_steps_together) {

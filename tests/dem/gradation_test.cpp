@@ -293,6 +293,112 @@ TEST(homogeneous, powders_are_weighed_by_the_room_they_had) {
     EXPECT_TRUE(powder_of(grains, true).carries_a.empty());
 }
 
+/// The layer as a mirror along x shows it: every grain went as far to the other side.
+Layer image_of(Layer layer) {
+    for (auto* y : {&layer.origin_y, &layer.deposit_y})
+        for (double& value : *y) value = -value;
+    return layer;
+}
+
+TEST(homogeneous, a_mirrored_pool_is_the_mean_of_a_layer_and_its_image) {
+    const Layer layer = synthetic::make_layer({.grains = 1500, .lateral = 150e-6}, 21);
+    const Layer image = image_of(layer);
+    const PooledGrains both = pool_map({&layer, 1}, {}, {}, true, 1.6e-3, 3.2e-3);
+    ASSERT_TRUE(both.mirrored);
+    const PooledGrains one = pool_grains({&layer, 1}, 1.6e-3, 3.2e-3),
+                       other = pool_grains({&image, 1}, 1.6e-3, 3.2e-3);
+    ASSERT_FALSE(one.mirrored);
+    const PartitionCurve folded{{{0.3e-3, 1.2e-3}, {1.4e-3, 0.6e-3}, {0.9e-3, 0.5e-3}, {3e-3, 0.4e-3}}};
+    std::vector<double> x, y, smooth;
+    for (PlanPoint p : kCurve.points) {
+        x.push_back(p.x);
+        y.push_back(p.y);
+    }
+    double largest = 0;
+    for (const int resamples : {0, 200}) {
+        HomogeneousOptions options;
+        options.resamples = resamples;
+        for (const PartitionCurve& curve : {kCurve, folded}) {
+            const auto gi = [&](const PooledGrains& grains) {
+                return homogeneous_profile(grains, curve, kBins, options).gi;
+            };
+            const auto drift = [&](const PooledGrains& grains) {
+                return homogeneous_drift(grains, curve, kBins, options).difference;
+            };
+            for (std::size_t b = 0; b < 8; ++b) {
+                EXPECT_NEAR(gi(both)[b], 0.5 * (gi(one)[b] + gi(other)[b]), 1e-12) << b;
+                EXPECT_NEAR(drift(both)[b], 0.5 * (drift(one)[b] + drift(other)[b]), 1e-12) << b;
+                largest = std::max(largest, std::abs(gi(one)[b] - gi(other)[b]));
+            }
+        }
+    }
+    EXPECT_GT(largest, 0.005);  // or the two would be the same anyway
+    smooth_homogeneous_profile<double>(both, x, y, kBins, 0, smooth);
+    HomogeneousOptions plain;
+    plain.resamples = 0;
+    for (std::size_t b = 0; b < 8; ++b)
+        EXPECT_NEAR(smooth[b], homogeneous_profile(both, kCurve, kBins, plain).gi[b], 1e-12) << b;
+    // parts of a pool stay what it is
+    EXPECT_TRUE(thirds_of(both).first.mirrored);
+}
+
+TEST(homogeneous, mirrored_derivatives_agree_with_differences) {
+    using Jet = ceres::Jet<double, 4>;
+    const Layer layer = synthetic::make_layer({.grains = 1500, .lateral = 150e-6}, 8);
+    const PooledGrains grains = pool_map({&layer, 1}, {}, {}, true, 1.6e-3, 3.2e-3);
+    const std::vector<double> x = {0.3e-3, 1.2e-3, 2.0e-3, 3.0e-3}, y = {1.2e-3, 0.95e-3, 0.7e-3, 0.4e-3};
+    std::vector<Jet> jet_x, jet_y, jet_gi;
+    for (int k = 0; k < 4; ++k) {
+        jet_x.emplace_back(x[k]);
+        jet_y.emplace_back(y[k], k);
+    }
+    smooth_homogeneous_profile<Jet>(grains, jet_x, jet_y, kBins, 80e-6, jet_gi);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double h = 1e-7;
+        std::vector<double> up_y = y, down_y = y, up, down;
+        up_y[k] += h;
+        down_y[k] -= h;
+        smooth_homogeneous_profile<double>(grains, x, up_y, kBins, 80e-6, up);
+        smooth_homogeneous_profile<double>(grains, x, down_y, kBins, 80e-6, down);
+        for (std::size_t b = 0; b < 8; ++b)
+            EXPECT_NEAR(jet_gi[b].v[static_cast<int>(k)], (up[b] - down[b]) / (2 * h), 2.0) << b << " " << k;
+    }
+}
+
+TEST(homogeneous, what_a_bed_went_to_one_side_is_no_noise_of_a_mirrored_pool) {
+    // beds that as a whole went 40 um to one side or the other: the border is moved, its image the other way
+    double spread[2] = {0, 0};
+    constexpr int kBeds = 40;
+    const PartitionCurve middle{{{0, 0.8e-3}, {3.2e-3, 0.8e-3}}};
+    HomogeneousOptions options;
+    options.resamples = 0;
+    Random random(4);
+    for (int bed = 0; bed < kBeds; ++bed) {
+        Layer layer = synthetic::make_layer({.grains = 1500, .lateral = 100e-6}, 100 + bed);
+        const double aside = 40e-6 * random.normal();
+        for (double& y : layer.origin_y) y -= aside;
+        PooledGrains grains = pool_map({&layer, 1}, {}, {}, true, 1.6e-3, 3.2e-3);
+        for (const bool mirrored : {false, true}) {
+            grains.mirrored = mirrored;
+            const double gi = homogeneous_profile(grains, middle, kBins, options).gi[4];
+            // over the border, Gaussian: the mean of the bin is 0.5 + integral of erf / 2
+            const double u = 0.2e-3 / 100e-6 / std::sqrt(2.0);
+            const double expected =
+                0.5 + 0.5 * (std::erf(u) + (std::exp(-u * u) - 1) / (u * std::sqrt(M_PI)));
+            spread[mirrored] += (gi - expected) * (gi - expected) / kBeds;
+        }
+    }
+    EXPECT_LT(std::sqrt(spread[1]), 0.4 * std::sqrt(spread[0]));
+}
+
+TEST(homogeneous, a_map_is_mirrored_where_the_powders_move_alike) {
+    const std::vector<Layer> layers(2, layer_of({{2e-3, 0.3e-3, 1}}));
+    const std::vector<BedPowders> alone = {{{}, true}, {{}, false}};
+    EXPECT_TRUE(pool_map(layers, {}, {}, true, 1.6e-3, 3.2e-3).mirrored);
+    EXPECT_FALSE(pool_map(layers, {}, {}, false, 1.6e-3, 3.2e-3).mirrored);
+    EXPECT_FALSE(pool_map(layers, {}, alone, true, 1.6e-3, 3.2e-3).mirrored);
+}
+
 TEST(homogeneous, smoothing_tends_to_the_hard_labels) {
     const Layer layer = synthetic::make_layer({.grains = 1500}, 9);
     HomogeneousOptions smooth;

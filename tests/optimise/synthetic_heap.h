@@ -23,6 +23,7 @@ struct Heap {
     double b_shift = 0;      ///< beside A, B's grains: centre moved by this ...
     double b_more = 1;       ///< ... and so many times as likely to be laid
     double bed_shift = 0;    ///< sd of what all grains of one bed share: a shift of the centre
+    double bed_aside = 0;    ///< the same across: sd of how far a bed as a whole goes to one side [m]
     double across = 0;       ///< centre moves by this from one side to the other: transport that depends on y
     double stray = 0;        ///< share of the labels that are drawn by lot
     double land_turn = 0;    ///< turn changes by this per m of land beyond 3.2 mm
@@ -70,6 +71,7 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
     layer.packing_seed = scene.seed;
     layer.bed_packing = 0.55;
     const double shift = heap.bed_shift * scene.dispenser_length * Random(scene.seed ^ 0xbedULL).normal();
+    const double aside = heap.bed_aside * Random(scene.seed ^ 0xa51deULL).normal();
     const int grains = int(heap.grains_per_m2 * scene.platform_length * scene.width);
     for (int i = 0; i < grains; ++i) {
         const double x = scene.platform_length * random.uniform();
@@ -84,7 +86,7 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
                      sd = heap.mixing * scene.dispenser_length;
         double origin_x = -1;
         while (!(origin_x >= 0 && origin_x < scene.dispenser_length)) origin_x = mean + sd * random.normal();
-        const double origin_y = y - heap.sigma_y * random.normal();
+        const double origin_y = y - aside - heap.sigma_y * random.normal();
         if (apart &&
             partition->on_side_a(origin_x, layer.periodic
                                                ? origin_y - scene.width * std::floor(origin_y / scene.width)
