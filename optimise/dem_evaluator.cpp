@@ -61,14 +61,14 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     options.resamples = kResamples;
     options.seed = evaluation.seed;
     const BedPowders bed{design.partition, true};
-    const PooledGrains grains = alike
-                                    ? pool_grains({&layer, 1}, footprint.x_low, footprint.x_high)
-                                    : pool_powders({&layer, 1}, {&bed, 1}, footprint.x_low, footprint.x_high);
+    PooledGrains grains = alike ? pool_grains({&layer, 1}, footprint.x_low, footprint.x_high)
+                                : pool_powders({&layer, 1}, {&bed, 1}, footprint.x_low, footprint.x_high);
+    grains.mirrored = alike && study_.scene.plate_thickness == 0;  // a slot tells left from right
     every.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
     every.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
     if (study_.target.is_field())
         every.field = homogeneous_field(grains, design.partition, study_.bins, study_.columns, options);
-    allow_for_beds(every, kBedsOverBlocksMap);
+    allow_for_beds(every, beds_over_blocks(grains));
     fill.apply(every.profile, every.drift);
     fill.apply(every.field.cells);
 

@@ -2,7 +2,8 @@
 // and sizes, on a packing seed of its own. It never reads an origin map (inverse-design.md): the profile
 // comes from the labels that the grains of this spread carried. Powders that move alike between periodic
 // sides move by the same law at every y, so there every laid grain tells of every y, by where it came from
-// (homogeneous_estimator.h): half the noise of bins that count their own grains only. Those bins are kept
+// (homogeneous_estimator.h), and without a slot in the bed in the mirror too: half the noise of bins that
+// count their own grains only. Those bins are kept
 // beside it (`plain_check`), and are what is quoted when they contradict it, or where powders, sides or fills
 // allow no such reading.
 #pragma once

@@ -151,7 +151,7 @@ OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
     fill(map, design, seed, study_.map_spreads, 0);
     // The spread is what costs: kept before anything is made of it.
     if (journal_ && map.health.status != "interrupted") {
-        journal_->append(with(design, map, Purpose::search), map.layers);
+        journal_->append(with(design, map, false), map.layers);
         map.told = false;
     }
     return map;
@@ -160,7 +160,7 @@ OriginMap& MapEvaluator::map_of(const Design& design, std::uint64_t seed) {
 Evaluation MapEvaluator::with_powder_b(const Design& design) {
     OriginMap& map = maps_b_[key_of(design, 0)];
     if (map.health.status == "not_run") fill(map, design, map_seed(study_.seed, study_.map_spreads), 1, 1);
-    const Evaluation evaluation = with(design, map, Purpose::quote);
+    const Evaluation evaluation = with(design, map, true);
     if (journal_ && evaluation.health.status != "interrupted") journal_->append(evaluation, map.layers);
     return evaluation;
 }
@@ -238,21 +238,17 @@ void MapEvaluator::extrapolate(OriginMap& map, const Design& design) {
 }
 
 Evaluation MapEvaluator::evaluate(const Design& design, std::uint64_t seed) {
-    Evaluation evaluation = with(design, map_of(design, seed), Purpose::quote);
+    Evaluation evaluation = with(design, map_of(design, seed), true);
     if (journal_ && evaluation.health.status != "interrupted") journal_->append(evaluation);
     return evaluation;
 }
 
 Evaluation MapEvaluator::quoted(const Design& design) {
-    return with(design, map_of(design), Purpose::quote);
-}
-
-Evaluation MapEvaluator::expected(const Design& design) {
-    return with(design, map_of(design), Purpose::choose);
+    return with(design, map_of(design), true);
 }
 
 Evaluation MapEvaluator::quick(const Design& design) {
-    return with(design, map_of(design), Purpose::search);
+    return with(design, map_of(design), false);
 }
 
 void MapEvaluator::describe_turnover(const OriginMap& map, Evaluation& evaluation) {
@@ -303,8 +299,7 @@ std::vector<LaidLayer> MapEvaluator::read_layers(const Design& design, const Ori
     return out;
 }
 
-Evaluation MapEvaluator::with(const Design& design, OriginMap& map, Purpose purpose) {
-    const bool quoted = purpose != Purpose::search;
+Evaluation MapEvaluator::with(const Design& design, OriginMap& map, bool quoted) {
     const auto begun = std::chrono::steady_clock::now();
     Evaluation evaluation;
     evaluation.design = design;
@@ -329,28 +324,13 @@ Evaluation MapEvaluator::with(const Design& design, OriginMap& map, Purpose purp
         options.seed = map.seed;
         // what was a block on the strip is one on the machine
         if (map.heap) options.block *= map.heap->length / map.heap->longest;
-        PooledGrains grains = map.pooled(footprint.x_low, footprint.x_high);
-        const auto read = [&](Evaluation& to) {
-            to.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
-            to.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
-            if (study_.target.is_field())
-                to.field = homogeneous_field(grains, design.partition, study_.bins, study_.columns, options);
-            if (!grains.replicates()) allow_for_beds(to, beds_over_blocks(grains));
-        };
-        read(evaluation);
-        if (purpose == Purpose::choose && grains.mirrored) {
-            // a spread with both powders is read as it lies
-            grains.mirrored = false;
-            Evaluation spread;
-            read(spread);
-            evaluation.profile.standard_error = spread.profile.standard_error;
-            evaluation.profile.degrees = spread.profile.degrees;
-            evaluation.drift.standard_error = spread.drift.standard_error;
-            evaluation.drift.noise_floor = spread.drift.noise_floor;
-            evaluation.drift.degrees = spread.drift.degrees;
-            evaluation.field.cells.standard_error = spread.field.cells.standard_error;
-            evaluation.field.cells.degrees = spread.field.cells.degrees;
-        }
+        const PooledGrains grains = map.pooled(footprint.x_low, footprint.x_high);
+        evaluation.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
+        evaluation.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
+        if (study_.target.is_field())
+            evaluation.field =
+                homogeneous_field(grains, design.partition, study_.bins, study_.columns, options);
+        if (!grains.replicates()) allow_for_beds(evaluation, beds_over_blocks(grains));
         if (map.heap) carry_extrapolation(*map.heap, evaluation);
         const ChamberFill fill = chamber_fill(study_, design);
         fill.apply(evaluation.profile, evaluation.drift);

@@ -58,11 +58,8 @@ class MapEvaluator : public Evaluator {
     /// map seeds.
     Evaluation evaluate(const Design& design, std::uint64_t seed) override;
     Fidelity fidelity() const override { return Fidelity::map; }
-    /// The same, not kept.
+    /// The same, not kept: for choosing between designs.
     Evaluation quoted(const Design& design);
-    /// The same for a choice between designs: what a spread with both powders is expected to show, with the
-    /// noise that its reading will have. A design whose noise is small in the mirror alone is not chosen.
-    Evaluation expected(const Design& design);
     /// Hard-label misfits and objective only, in milliseconds: for searches.
     Evaluation quick(const Design& design);
     /// Runs the strips when these motion variables are new. The reference stays valid.
@@ -71,7 +68,7 @@ class MapEvaluator : public Evaluator {
     /// any partition is the same mean of theirs. Not kept, costs no spread.
     OriginMap between(const std::vector<Design>& motions, const std::vector<double>& share);
     /// `quick` on a map of that kind.
-    Evaluation quick(const Design& design, OriginMap& map) { return with(design, map, Purpose::search); }
+    Evaluation quick(const Design& design, OriginMap& map) { return with(design, map, false); }
     /// Adds the layer of another spread with the same motion, wide or narrow, periodic sides, to the map of
     /// `design`: its origins are as good as the strips'. `state_hash`: of that spread.
     void learn(const Design& design, const Layer& layer, const std::string& state_hash);
@@ -89,8 +86,7 @@ class MapEvaluator : public Evaluator {
   private:
     using Key = std::array<double, 6>;
     Key key_of(const Design& design, std::uint64_t seed) const;
-    enum class Purpose { search, choose, quote };
-    Evaluation with(const Design& design, OriginMap& map, Purpose purpose);
+    Evaluation with(const Design& design, OriginMap& map, bool quoted);
 
     /// Every layer of a run of several.
     std::vector<LaidLayer> read_layers(const Design& design, const OriginMap& map,

@@ -174,7 +174,7 @@ class MapStrategy {
         }
         double least = std::numeric_limits<double>::infinity();
         for (const Design& design : found) {
-            const double bound = upper_bound(run_.map.expected(design), correction);
+            const double bound = upper_bound(run_.map.quoted(design), correction);
             if (bound < least) {
                 least = bound;
                 best.design = design;

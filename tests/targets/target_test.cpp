@@ -2,6 +2,7 @@
 #include "targets/target.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -34,7 +35,8 @@ double numeric_mean(const Target& target, double low, double high) {
 /// A CSV file that lives as long as the test.
 class CsvFile {
   public:
-    explicit CsvFile(const std::string& text) : path_(testing::TempDir() + "gradwright_target_test.csv") {
+    explicit CsvFile(const std::string& text)
+        : path_(testing::TempDir() + std::to_string(::getpid()) + "-gradwright_target_test.csv") {
         std::ofstream(path_, std::ios::binary) << text;
     }
     ~CsvFile() { std::remove(path_.c_str()); }
