@@ -18,8 +18,8 @@
 //   s^6, C3.
 // A bed without labels is its own mirror image: a grain from the same x might as well have gone the other way
 // across. Grains pooled as `mirrored` count half with way_i and half with -way_i. What that takes out is what
-// a bed as a whole has gone to one side, most of the difference between two beds: sixteen strips of the
-// coupon differ by 0.005 to 0.021 in a bin instead of 0.028 to 0.032 (docs/origin-map.md, "One bed's noise").
+// a bed as a whole has gone to one side, most of the difference between two beds: strips of the coupon differ
+// by 0.02 in a bin instead of 0.03 (docs/origin-map.md, "In the mirror too").
 // Powders that move differently in one heap. A spread with both tells how A's grains move and how B's, each
 // only from its own side of that spread's partition. Weighed by the share r(x) of the dispenser's width that
 // its powder took up where it came from, w_i = V_i / r(origin_x_i), the grains of a powder stand for a
