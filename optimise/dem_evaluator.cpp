@@ -63,7 +63,7 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     const BedPowders bed{design.partition, true};
     PooledGrains grains = alike ? pool_grains({&layer, 1}, footprint.x_low, footprint.x_high)
                                 : pool_powders({&layer, 1}, {&bed, 1}, footprint.x_low, footprint.x_high);
-    grains.mirrored = alike && study_.scene.plate_thickness == 0;  // a slot tells left from right
+    grains.mirrored = spreads_like_its_image(study_);
     every.profile = homogeneous_profile(grains, design.partition, study_.bins, options);
     every.drift = homogeneous_drift(grains, design.partition, study_.bins, options);
     if (study_.target.is_field())
@@ -72,13 +72,30 @@ void DemEvaluator::read_profile(const Layer& layer, const ChamberFill& fill, Eva
     fill.apply(every.profile, every.drift);
     fill.apply(every.field.cells);
 
+    // the bed against itself: what it went to one side as a whole is in its bins and averaged out in the
+    // mirror
+    GradationProfile itself = every.profile;
+    XDrift itself_drift = every.drift;
+    GradationField itself_field = every.field;
+    if (grains.mirrored) {
+        PooledGrains unmirrored = grains;
+        unmirrored.mirrored = false;
+        options.resamples = 0;
+        itself = homogeneous_profile(unmirrored, design.partition, study_.bins, options);
+        itself_drift = homogeneous_drift(unmirrored, design.partition, study_.bins, options);
+        if (study_.target.is_field())
+            itself_field =
+                homogeneous_field(unmirrored, design.partition, study_.bins, study_.columns, options);
+        fill.apply(itself, itself_drift);
+        fill.apply(itself_field.cells);
+    }
     const std::vector<double> weight = bin_weights(study_);
     const double profile_p =
-        agreement(evaluation.profile.gi, evaluation.profile.standard_error, every.profile.gi, weight);
+        agreement(evaluation.profile.gi, evaluation.profile.standard_error, itself.gi, weight);
     const double drift_p = agreement(evaluation.drift.difference, evaluation.drift.standard_error,
-                                     every.drift.difference, weight);
+                                     itself_drift.difference, weight);
     const double field_p = agreement(evaluation.field.cells.gi, evaluation.field.cells.standard_error,
-                                     every.field.cells.gi, field_weights(study_));
+                                     itself_field.cells.gi, field_weights(study_));
     const int tests = study_.target.is_field() ? 3 : 2;
     evaluation.every_grain = std::min({profile_p, drift_p, field_p}) >= kSignificance / tests;
     if (!evaluation.every_grain) {

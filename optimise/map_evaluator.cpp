@@ -110,6 +110,10 @@ bool moves_alike(const Study& study) {
     return a.size == b.size && std::fabs(a.material.density / b.material.density - 1) <= kLikeDensity;
 }
 
+bool spreads_like_its_image(const Study& study) {
+    return moves_alike(study) && study.scene.plate_thickness == 0;
+}
+
 void MapEvaluator::learn(const Design& design, const Layer& layer, const std::string& state_hash) {
     OriginMap& map = map_of(design);
     map.layers.push_back(layer);

@@ -107,6 +107,9 @@ class MapEvaluator : public Evaluator {
 /// Do A and B move alike by what they are, so that a label moves nothing and a spread with both is a map as
 /// good as one without labels? Same sizes, densities within 5 %. Else a strip of B decides (powder_gate.h).
 bool moves_alike(const Study& study);
+/// Is a full spread between periodic sides as likely as its mirror image? Powders that move alike, and no
+/// slot in the bed, which would tell left from right.
+bool spreads_like_its_image(const Study& study);
 
 /// Periodic strip laid side by side until it fills `width`: y-homogeneity as a picture, and for plain bins
 /// [m].

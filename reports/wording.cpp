@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "optimise/chamber_fill.h"
+#include "optimise/map_evaluator.h"
 #include "reports/plate_checks.h"
 
 namespace gradwright {
@@ -211,10 +212,13 @@ Wording wording(const Study& study, const StudyResult& result) {
                                            "beds would give them directly)");
         if (std::all_of(result.confirmations.begin(), result.confirmations.end(),
                         [](const Evaluation& one) { return one.every_grain; }))
-            words.sure +=
-                " Like powders between periodic sides move by one law at every y, so every laid grain was "
-                "read for "
-                "every y by where it came from; bins of their own grains agree with that.";
+            words.sure += fmt::format(
+                " Periodic sides: every y has the same law, so every laid grain was read for every y by "
+                "where "
+                "it came from{}; bins of their own grains agree with that.",
+                spreads_like_its_image(study)
+                    ? ", and for its mirror image, so that the numbers are of the average bed"
+                    : "");
     } else if (result.extrapolated) {
         const ScaledHeap& heap = *result.extrapolated;
         words.sure = fmt::format(

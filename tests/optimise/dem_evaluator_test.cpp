@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "optimise/map_evaluator.h"
 #include "tests/optimise/synthetic_heap.h"
 
 namespace gradwright {
@@ -51,6 +52,29 @@ TEST(DemEvaluator, like_powders_between_periodic_sides_are_read_from_every_grain
         EXPECT_LT(got.drift.noise_floor, got.plain_check_drift.noise_floor);
     }
     EXPECT_LT(of_all, 0.5 * of_bins);
+}
+
+TEST(DemEvaluator,
+     what_a_bed_went_to_one_side_is_not_blamed_on_the_partition_unless_a_slot_tells_the_sides_apart) {
+    Heap heap;
+    heap.bed_aside = 20e-6;
+    double error[2] = {0, 0};  // mean square, without and with a slot
+    for (const bool slot : {false, true}) {
+        Study study = periodic_coupon();
+        study.scene.plate_thickness = slot ? 50e-6 : 0;
+        EXPECT_EQ(spreads_like_its_image(study), !slot);
+        const Truth expected = truth(heap, study, start_design(study), true);
+        for (int seed = 1; seed <= 12; ++seed) {
+            const Evaluation got = spread_once(study, heap, seed);
+            ASSERT_TRUE(got.every_grain) << seed;
+            std::vector<double> off = got.profile.gi;
+            for (std::size_t b = 0; b < off.size(); ++b) off[b] -= expected.gi[b];
+            error[slot] += std::pow(rms(off, got.weight), 2) / 12;
+        }
+    }
+    // 1.25 a millimetre times 20 um is 0.025 where nothing else moves the profile
+    EXPECT_GT(std::sqrt(error[1]), 0.015);
+    EXPECT_LT(error[0], 0.5 * error[1]);
 }
 
 TEST(DemEvaluator, unlike_powders_are_read_each_by_its_own_grains_with_less_noise) {

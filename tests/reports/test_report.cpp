@@ -215,6 +215,19 @@ TEST(Wording, a_prediction_is_never_called_confirmed) {
     EXPECT_THAT(words.sure, HasSubstr("prediction"));
 }
 
+TEST(Wording, a_spread_read_in_the_mirror_is_called_so) {
+    Study study = fixture::study();
+    StudyResult result = fixture::result(study);
+    ASSERT_FALSE(result.confirmations.empty());
+    for (Evaluation& one : result.confirmations) one.every_grain = true;
+    study.scene.plate_thickness = 0;
+    study.scene.powder[1] = study.scene.powder[0];
+    EXPECT_THAT(wording(study, result).sure, HasSubstr("mirror image"));
+    study.scene.plate_thickness = 50e-6;
+    EXPECT_THAT(wording(study, result).sure, HasSubstr("read for every y"));
+    EXPECT_THAT(wording(study, result).sure, Not(HasSubstr("mirror image")));
+}
+
 TEST(Wording, a_drift_above_a_tenth_is_a_warning) {
     const Study study = fixture::study();
     StudyResult result = fixture::result(study);
