@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -20,6 +21,12 @@ void permute(V& values, const std::vector<std::int32_t>& order, int threads) {
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
     values.swap(sorted);
+}
+
+constexpr double kWakes = 3;  // radii from a grain's centre: a moving body that comes so near wakes it
+
+bool moves(const Body& body) {
+    return body.speed_x != 0 || body.speed_z != 0;
 }
 
 }  // namespace
@@ -235,24 +242,12 @@ void Engine::rebuild_candidates() {
     find_reachable_bodies();
     frame_shift_ = {};
     body_way_ = 0;
-    reverse_first_.clear();
-}
-
-// Only who may fall asleep is asked by its neighbours of lower number.
-void Engine::find_reverse_candidates() {
-    reverse_first_.assign(state_.size() + 1, 0);
-    for (const std::int32_t j : candidate_) ++reverse_first_[j + 1];
-    std::partial_sum(reverse_first_.begin(), reverse_first_.end(), reverse_first_.begin());
-    reverse_.resize(candidate_.size());
-    std::vector<std::int32_t> at(reverse_first_.begin(), reverse_first_.end() - 1);
-    for (std::size_t i = 0; i < state_.size(); ++i)
-        for (std::int32_t c = candidate_first_[i]; c < candidate_first_[i + 1]; ++c)
-            reverse_[at[candidate_[c]]++] = static_cast<std::int32_t>(i);
 }
 
 void Engine::find_reachable_bodies() {
     const auto& s = state_;
     reachable_.assign(s.size(), 0);
+    wakeable_.assign(s.size(), 0);
 #pragma omp parallel for schedule(static, 256) num_threads(threads_)
     for (std::size_t i = 0; i < s.size(); ++i) {
         if (s.fixed[i]) continue;
@@ -260,7 +255,9 @@ void Engine::find_reachable_bodies() {
             if (body_removed_[b]) continue;
             const auto p = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_,
                                          bodies_[b].speed_z * body_time_, s.x[i], s.y[i], s.z[i]);
-            if (p.distance < s.radius[i] + wide_reach_[i] + wide_body_reach_) reachable_[i] |= 1u << b;
+            const double reach = wide_reach_[i] + wide_body_reach_;
+            if (p.distance < s.radius[i] + reach) reachable_[i] |= 1u << b;
+            if (moves(bodies_[b]) && p.distance < kWakes * s.radius[i] + reach) wakeable_[i] = 1;
         }
     }
 }
@@ -273,51 +270,59 @@ void Engine::update_sleep() {
     auto& s = state_;
     const std::size_t n = s.size();
     if (options_.sleep) {
-        if (reverse_first_.empty()) find_reverse_candidates();
         const std::int32_t needed = static_cast<std::int32_t>(options_.sleep_time / options_.time_step);
-        std::vector<float> speed(n, 0.0f);
-        for (std::size_t i = 0; i < n; ++i) {
-            if (s.fixed[i] || s.asleep[i]) continue;
-            // Not the spin: a grain that rolls also moves, and one that only twists about a contact normal
-            // would do so for ever, because the law has no twisting resistance.
-            speed[i] =
-                static_cast<float>(std::sqrt(s.vx[i] * s.vx[i] + s.vy[i] * s.vy[i] + s.vz[i] * s.vz[i]));
-            s.quiet[i] = speed[i] < options_.sleep_speed
-                             ? s.quiet[i] + static_cast<std::int32_t>(steps_since_near_)
-                             : 0;
-        }
-        std::vector<std::uint8_t> next(s.asleep);
-        const double wake = options_.wake_speed;
-#pragma omp parallel for schedule(static, 256) num_threads(threads_)
+        // What a grain does to its neighbours and what would disturb it, two bits each: an awake one stirs
+        // those about to fall asleep unless it has been quiet for half the time, and everybody when it is
+        // fast.
+        constexpr std::uint8_t kRestless = 1, kFast = 2, kSleeper = kFast << 2,
+                               kDrowsy = (kRestless | kFast) << 2;
+        std::vector<std::uint8_t> manner(n, 0), disturbed(n, 0);
+#pragma omp parallel for schedule(static) num_threads(threads_)
         for (std::size_t i = 0; i < n; ++i) {
             if (s.fixed[i]) continue;
-            if (!s.asleep[i] && s.quiet[i] < needed) continue;
-            bool calm = true, hit = false;
-            auto look = [&](std::size_t j) {
-                if (s.fixed[j] || s.asleep[j]) return;
+            if (s.asleep[i]) {
+                manner[i] = kSleeper;
+                continue;
+            }
+            // Not the spin: a grain that rolls also moves, and one that only twists about a contact normal
+            // would do so for ever, because the law has no twisting resistance.
+            const Moving& m = s.moving[i];
+            const auto speed = static_cast<float>(std::sqrt(m.vx * m.vx + m.vy * m.vy + m.vz * m.vz));
+            s.quiet[i] =
+                speed < options_.sleep_speed ? s.quiet[i] + static_cast<std::int32_t>(steps_since_near_) : 0;
+            manner[i] = static_cast<std::uint8_t>((s.quiet[i] >= needed ? kDrowsy : 0) |
+                                                  (s.quiet[i] < needed / 2 ? kRestless : 0) |
+                                                  (speed > options_.wake_speed ? kFast : 0));
+        }
+        const auto disturb = [&](std::size_t i) {
+            std::atomic_ref(disturbed[i]).store(1, std::memory_order_relaxed);
+        };
+#pragma omp parallel for schedule(static, 256) num_threads(threads_)
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint8_t mine = manner[i];
+            for (std::int32_t c = candidate_first_[i]; c < candidate_first_[i + 1]; ++c) {
+                const auto j = static_cast<std::size_t>(candidate_[c]);
+                const bool to_i = (mine >> 2 & manner[j] & 3) != 0, to_j = (manner[j] >> 2 & mine & 3) != 0;
+                if (!(to_i | to_j)) continue;
                 double dy = s.y[i] - s.y[j];
                 if (options_.period_y > 0) dy -= options_.period_y * std::nearbyint(dy / options_.period_y);
                 const double dx = s.x[i] - s.x[j], dz = s.z[i] - s.z[j];
                 const double cut = s.radius[i] + s.radius[j] + near_skin_;
-                if (dx * dx + dy * dy + dz * dz > cut * cut) return;
-                if (s.quiet[j] < needed / 2) calm = false;
-                if (speed[j] > wake) hit = true;
-            };
-            for (std::int32_t c = candidate_first_[i]; c < candidate_first_[i + 1]; ++c) look(candidate_[c]);
-            for (std::int32_t r = reverse_first_[i]; r < reverse_first_[i + 1]; ++r) look(reverse_[r]);
-            if (bodies_move_) {
-                for (std::size_t b = 0; b < bodies_.size(); ++b) {
-                    if (body_removed_[b] || (bodies_[b].speed_x == 0 && bodies_[b].speed_z == 0)) continue;
-                    const auto near = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_,
-                                                    bodies_[b].speed_z * body_time_, s.x[i], s.y[i], s.z[i]);
-                    if (near.distance < 3 * s.radius[i]) hit = true;
-                }
+                if (dx * dx + dy * dy + dz * dz > cut * cut) continue;
+                if (to_i) disturb(i);
+                if (to_j) disturb(j);
             }
-            if (s.asleep[i])
-                next[i] = hit ? 0 : 1;
-            else
-                next[i] = calm && !hit ? 1 : 0;
+            if (!bodies_move_ || !wakeable_[i] || !(mine & kSleeper)) continue;
+            for (std::size_t b = 0; b < bodies_.size(); ++b) {
+                if (body_removed_[b] || !moves(bodies_[b])) continue;
+                const auto near = nearest_point(bodies_[b], bodies_[b].speed_x * body_time_,
+                                                bodies_[b].speed_z * body_time_, s.x[i], s.y[i], s.z[i]);
+                if (near.distance < kWakes * s.radius[i]) disturb(i);
+            }
         }
+        std::vector<std::uint8_t> next(s.asleep);
+        for (std::size_t i = 0; i < n; ++i)
+            if (manner[i] & kSleeper) next[i] = !disturbed[i];  // a drowsy one has that bit too
         for (std::size_t i = 0; i < n; ++i) {
             if (next[i] == s.asleep[i]) continue;
             s.asleep[i] = next[i];

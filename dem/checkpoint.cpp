@@ -10,7 +10,7 @@
 namespace gradwright {
 namespace {
 
-constexpr char kMark[] = "gradwright run 1\n";
+constexpr char kMark[] = "gradwright run 2\n";
 
 /// Both ways by one list of members, so that none is saved and not restored.
 struct Saver {
@@ -100,10 +100,10 @@ void Engine::archive(Archive& to) {
     to.value(built_from_);
     to.value(built_error_);
     to.array(built_);
-    for (auto* array :
-         {&candidate_first_, &candidate_, &candidate_slot_, &reverse_first_, &reverse_, &new_index_, &awake_})
+    for (auto* array : {&candidate_first_, &candidate_, &candidate_slot_, &new_index_, &awake_})
         to.array(*array);
     to.array(reachable_);
+    to.array(wakeable_);
     to.value(next_id_);
     if (options_.precision == Precision::double_law)
         static_cast<KernelOf<double>&>(*kernel_).archive(to);

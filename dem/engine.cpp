@@ -221,8 +221,7 @@ double Engine::memory_bytes() const {
     count(candidate_first_);
     count(candidate_);
     count(candidate_slot_);
-    count(reverse_first_);
-    count(reverse_);
+    count(wakeable_);
     count(new_index_);
     count(awake_);
     return bytes;

@@ -167,7 +167,6 @@ class Engine {
     std::string options_text() const;  ///< hash of what a saved run must agree with
     void rebuild_candidates();
     void find_reachable_bodies();
-    void find_reverse_candidates();
     void update_sleep();
     /// Two things close in by no more than the sum of their ways against any common frame. Taken is the mean
     /// motion of the grains that are awake, so that a heap that is pushed along, or a bed that falls, counts
@@ -217,9 +216,8 @@ class Engine {
     std::vector<std::array<float, 3>> built_;  ///< ... in float,
     double built_error_ = 0;                   ///< so far off at most
     std::vector<std::int32_t> candidate_first_, candidate_, candidate_slot_;
-    std::vector<std::int32_t> reverse_first_,
-        reverse_;  ///< grains that have a grain as their candidate; only where grains sleep
     std::vector<std::uint32_t> reachable_;  ///< bodies within the skin of a grain, one bit each
+    std::vector<std::uint8_t> wakeable_;    ///< 1: a moving body may come near enough to wake it
     std::vector<std::int32_t> new_index_;   ///< of the last permutation: old index -> new index, -1 removed
     std::vector<std::int32_t> awake_;
     std::int32_t next_id_ = 0;

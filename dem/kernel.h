@@ -96,6 +96,7 @@ struct Engine::KernelOf final : Engine::Kernel {
         std::int32_t first_tile = 0, end_tile = 0, first_wall = 0, end_wall = 0;
         std::int32_t own_end = 0, wall_end = 0;  ///< slots behind the last grain's
         std::int32_t own_touching = 0;           ///< of its pairs, those that touched when the list was made
+        std::int32_t own_parked = 0;             ///< its first parked pair, of all of them
         std::int32_t first_awake = 0, end_awake = 0;  ///< into Engine::awake_
         std::int32_t reach = -1;                      ///< highest second grain of its pairs
         std::uint8_t presses_still = 0;  ///< 1: some pair acts on a grain of it that does not move
@@ -105,7 +106,12 @@ struct Engine::KernelOf final : Engine::Kernel {
     struct Share {
         std::int32_t first = 0, tail = 0, end = 0;
         std::int32_t kept = 0;
-        double cost = 0;  ///< of its blocks, as share_out() reckons it
+        std::int32_t reach = -1;         ///< highest second grain of its tail's pairs
+        double cost = 0, tail_cost = 0;  ///< of its blocks, of its tail, as share_out() reckons them
+    };
+    /// How long a share took in some steps: its tail, and the sweep [s].
+    struct Busy {
+        double tail = 0, sweep = 0;
     };
 
     explicit KernelOf(Engine& engine)
@@ -134,24 +140,30 @@ struct Engine::KernelOf final : Engine::Kernel {
                 parked_slots = 0;  ///< parked: both ends asleep or fixed, history kept, not computed
     std::size_t wall_slots = 0;    ///< as active_slots with the padding at the blocks' ends
     std::vector<std::int32_t> wall_first;
-    std::vector<std::uint8_t> keep;  ///< per candidate: what becomes of it (contact_list.cpp)
-    std::vector<std::int32_t> park_first;
     std::vector<Block> blocks;
     std::vector<Share> shares;
-    std::vector<double> pace;  ///< of each share's thread: cost over time, against the mean of all
+    /// Of each share's thread, in all it does and in its tail alone: cost over time, against the mean of all.
+    std::vector<double> pace, tail_pace;
     std::vector<std::array<double, 3>> force_on_fixed_by_block;  ///< of the last step [N]
 
     void write_records() override;
     /// Who sweeps what, for the pairs as they stand. Shares are cut so that all threads end together, by how
     /// fast each was: cores differ, and others use them too.
     void share_out();
-    /// `busy`: seconds that each share took in the steps just done.
-    void learn_pace(const std::vector<double>& busy);
+    void learn_pace(const std::vector<Busy>& busy);
     Predicted predicted(std::size_t i) const override;
     void scale_motion(double factor) override;
     void rebuild_near() override;
     /// Leaves `tiles_before` and, in `sums`, the springs of what touches: the tiles may be overwritten.
     void keep_springs();
+    /// `work(block)` for every block, if possible on the thread that sweeps it: its pairs stay in that core's
+    /// cache. Blocks in which nobody is awake, and what is left in the end, go to whoever has time.
+    template <class Work>
+    void on_own_thread(Work&& work);
+    /// Which grain of the block each of its candidates belongs to; stands until the thread asks again.
+    const std::uint8_t* owners(std::size_t block) const;
+    /// What the first `lanes` pairs of a tile are made of, from their grains.
+    void write_constants(PairTile& tile, int lanes);
     int numbers_per_spring() const { return has_rolls ? 6 : 3; }  ///< tangential, then rolling
     void rebuild_walls();
     void carry_history() override;
@@ -166,6 +178,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Where `ahead` is to get to during block `b` of a share whose tail begins at `tail`.
     void aim(Ahead& ahead, std::int32_t b, std::int32_t tail) const;
     void fetch_grains(Ahead& ahead) const;
+    /// Grains of the next share that a tail's pairs meet: read by the tail, then written by their own thread.
+    void fetch_met(std::int32_t first, std::int32_t last, bool reading) const;
     /// One half of a tile some way on: its pairs and constants, or what they remember.
     void fetch_tile(std::int32_t tile, bool second_half) const;
     /// The block's pairs; what they do is added to the sums, or with `kept` left there, a tile each.

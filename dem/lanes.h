@@ -151,12 +151,29 @@ inline std::uint32_t bits_where_less(F8 a, F8 b) {
     return bits;
 #endif
 }
+/// One bit a lane of a comparison's result, and back.
+inline std::uint32_t bits_of(I8 mask) {
+    return bits_where_less(__builtin_convertvector(mask, F8), F8{});  // true is -1
+}
+inline I8 lanes_of(std::uint32_t bits) {
+    const I8 lane = {1, 2, 4, 8, 16, 32, 64, 128};
+    return ((I8{} + static_cast<std::int32_t>(bits)) & lane) != 0;
+}
 inline std::uint32_t bits_where_less(F16 a, F16 b) {
 #ifdef __AVX512F__
     return __builtin_ia32_cmpps512_mask(a, b, 1, -1, 4);
 #else
     std::uint32_t bits = 0;
     for (int lane = 0; lane < 16; ++lane) bits |= std::uint32_t{a[lane] < b[lane]} << lane;
+    return bits;
+#endif
+}
+inline std::uint32_t bits_where_less(D8 a, D8 b) {
+#ifdef __AVX512F__
+    return __builtin_ia32_cmppd512_mask(a, b, 1, -1, 4);
+#else
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < 8; ++lane) bits |= std::uint32_t{a[lane] < b[lane]} << lane;
     return bits;
 #endif
 }

@@ -39,7 +39,10 @@ void Engine::KernelOf<T>::share_out() {
         shares.assign(threads, Share{});
         std::int32_t next = 0;
         double done = 0, wanted = 0, longest = 0;  // tail, in time
-        if (static_cast<std::int32_t>(pace.size()) != threads) pace.assign(threads, 1.0);
+        if (static_cast<std::int32_t>(pace.size()) != threads) {
+            pace.assign(threads, 1.0);
+            tail_pace.assign(threads, 1.0);
+        }
         for (std::int32_t t = 0; t < threads; ++t) {
             shares[t].first = next;
             wanted += all * pace[t] / std::accumulate(pace.begin(), pace.end(), 0.0);
@@ -54,13 +57,14 @@ void Engine::KernelOf<T>::share_out() {
                 if (blocks[b].reach >= first_grain(share.end)) share.tail = b;
                 if (t + 1 < threads && blocks[b].reach >= first_grain(shares[t + 1].end)) return false;
             }
-            longest = std::max(longest, cost_of(share) / pace[t]);
+            longest = std::max(longest, cost_of(share) / tail_pace[t]);
         }
-        // While the longest tail is computed the others do not wait: theirs is made as long.
+        // While the longest tail is computed the others do not wait: theirs is made as long. A tail that
+        // reaches into another thread's grains waits for them, one that was made longer does not.
         for (std::int32_t t = 0; t < threads; ++t) {
             Share& share = shares[t];
             while (share.tail > share.first &&
-                   cost_of(share) + 0.5 * cost_of_pairs(share.tail - 1) < longest * pace[t])
+                   cost_of(share) + 0.5 * cost_of_pairs(share.tail - 1) < longest * tail_pace[t])
                 --share.tail;
         }
         return true;
@@ -75,6 +79,9 @@ void Engine::KernelOf<T>::share_out() {
     for (Share& share : shares) {
         share.kept = kept_tiles;
         kept_tiles += tiles_of(share.tail, share.end);
+        share.tail_cost = cost_of(share);
+        for (std::int32_t b = share.tail; b < share.end; ++b)
+            share.reach = std::max(share.reach, blocks[b].reach);
         share.cost = 0;
         for (std::int32_t b = share.first; b < share.end; ++b) share.cost += weight(b);
     }
@@ -83,24 +90,32 @@ void Engine::KernelOf<T>::share_out() {
 }
 
 template <class T>
-void Engine::KernelOf<T>::learn_pace(const std::vector<double>& busy) {
+void Engine::KernelOf<T>::learn_pace(const std::vector<Busy>& busy) {
     const std::size_t count = shares.size();
     if (count < 2 || pace.size() != count) return;
-    double mean = 0;
-    std::vector<double> rate(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        rate[k] = shares[k].cost / busy[k];
-        if (!(busy[k] > 0) || !(rate[k] > 0)) return;
-        mean += rate[k] / static_cast<double>(count);
-    }
-    constexpr double kTrust = 0.25;  // of one list's steps, some milliseconds
-    for (std::size_t k = 0; k < count; ++k)
-        pace[k] = std::clamp(pace[k] + kTrust * (rate[k] / mean - pace[k]), 0.25, 4.0);
+    const auto learn = [count](std::vector<double>& known, const auto& cost, const auto& seconds) {
+        double mean = 0;
+        std::vector<double> rate(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            rate[k] = cost(k) / seconds(k);
+            if (!(seconds(k) > 0) || !(rate[k] > 0)) return;
+            mean += rate[k] / static_cast<double>(count);
+        }
+        constexpr double kTrust = 0.25;  // of one list's steps, some milliseconds
+        for (std::size_t k = 0; k < count; ++k)
+            known[k] = std::clamp(known[k] + kTrust * (rate[k] / mean - known[k]), 0.25, 4.0);
+    };
+    learn(
+        pace, [this](std::size_t k) { return shares[k].cost; },
+        [&busy](std::size_t k) { return busy[k].tail + busy[k].sweep; });
+    learn(
+        tail_pace, [this](std::size_t k) { return shares[k].tail_cost; },
+        [&busy](std::size_t k) { return busy[k].tail; });
 }
 
 template void Engine::KernelOf<double>::share_out();
 template void Engine::KernelOf<WideFloat>::share_out();
-template void Engine::KernelOf<double>::learn_pace(const std::vector<double>&);
-template void Engine::KernelOf<WideFloat>::learn_pace(const std::vector<double>&);
+template void Engine::KernelOf<double>::learn_pace(const std::vector<Busy>&);
+template void Engine::KernelOf<WideFloat>::learn_pace(const std::vector<Busy>&);
 
 }  // namespace gradwright

@@ -49,6 +49,25 @@ void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) c
     ahead.own_each = part(ahead.own_end - ahead.own);
 }
 
+// What the pairs of one share's tail do to the next share's grains goes from core to core and back in every
+// step: all asked for at once, as these are few and the computing would only wait for one after the other.
+// Where the cores share no cache 47 to 49 million grain-steps/s, the heap of 10 000 awake grains, two
+// threads.
+template <class T>
+[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_met(std::int32_t first, std::int32_t last,
+                                                                  bool reading) const {
+    for (std::int32_t grain = first; grain <= last; grain += 2) {  // two grains a cache line
+        __builtin_prefetch(&sums[grain], 1);
+        if (reading) {
+            __builtin_prefetch(&e.state_.place[grain], 0);
+            __builtin_prefetch(&motion[grain], 0);
+        } else {
+            __builtin_prefetch(&e.state_.place[grain], 1);
+            __builtin_prefetch(&motion[grain], 1);
+        }
+    }
+}
+
 template <class T>
 void Engine::KernelOf<T>::hand_over_kept(const Block& block, const Handed* from, std::int32_t end,
                                          bool beyond) {
@@ -128,7 +147,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
         double of[2] = {0, 0};
     };
     std::vector<Top> tops(static_cast<std::size_t>(count));
-    std::vector<double> busy(static_cast<std::size_t>(count), 0.0);
+    std::vector<Busy> busy(static_cast<std::size_t>(count));
     long done = 0;
     double travel = e.travel_, law_seconds = 0,
            grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
@@ -139,7 +158,8 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const bool beyond_cache = static_cast<int>(e.state_.size()) > e.options_.cached_grains;
 #pragma omp parallel num_threads(count)
     {
-        double my_travel = e.travel_, my_busy = 0;
+        double my_travel = e.travel_;
+        Busy my_busy;
         long my_done = 0;
         const int me = omp_get_thread_num(), all = omp_get_num_threads();
         const auto kept_of = [&](const Share& share, const Block& block) {
@@ -149,16 +169,16 @@ long Engine::KernelOf<T>::run_with(long steps) {
             const double bt = body_time + (e.bodies_move_ ? dt * step : 0);
             const double kick = first_kick && step == 0 ? 0.5 * dt : dt;
             // what a stage costs is looked at in every eighth step, by the first thread; how long a share
-            // takes by its own
-            const bool watched = step % 8 == 0, clocked = me == 0 && watched;
+            // takes by its own. Not in the first: there the new lists come from another core's cache.
+            const bool watched = step % 8 == 4, clocked = me == 0 && watched;
             double clock = clocked ? omp_get_wtime() : 0;
-            const auto watch = [&](double& start) {
-                const double now = watched && count == all ? omp_get_wtime() : 0;
-                if (start > 0) my_busy += now - start;
-                start = now;
-            };
             double since = 0;
-            watch(since);
+            const auto watch = [&](double* seconds) {
+                const double now = watched && count == all ? omp_get_wtime() : 0;
+                if (seconds) *seconds += now - since;
+                since = now;
+            };
+            watch(nullptr);
             const auto lap = [&](double& seconds) {
                 if (!clocked) return;
                 const double now = omp_get_wtime();
@@ -168,21 +188,22 @@ long Engine::KernelOf<T>::run_with(long steps) {
             if (tails) {
                 for (int s = me; s < count; s += all) {
                     const Share& share = shares[s];
+                    fetch_met(first_grain(share.end), share.reach, true);
                     for (std::int32_t b = share.tail; b < share.end; ++b) {
                         Handed* const to = kept_of(share, blocks[b]);
                         pair_pass<kAdhesive, kRolling>(blocks[b], to, nullptr);
                         hand_over_kept(blocks[b], to, first_grain(share.end), true);
                     }
                 }
-                watch(since);
+                watch(&my_busy.tail);
 #pragma omp barrier
                 lap(law_seconds);
-                since = 0;
-                watch(since);
+                watch(nullptr);
             }
             for (int s = me; s < count; s += all) {
                 const Share& share = shares[s];
                 double top = 0;
+                if (s > 0) fetch_met(first_grain(share.first), shares[s - 1].reach, false);
                 Ahead ahead;
                 ahead.met = ahead.met_end = first_grain(share.first);
                 for (std::int32_t b = share.first; b < share.end; ++b) {
@@ -205,7 +226,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 tops[s].of[step % 2] = top;
             }
             if (count > 1) {
-                watch(since);
+                watch(&my_busy.sweep);
 #pragma omp barrier
             }
             double top = 0;

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 
+#include "dem/cube_root.h"
 #include "dem/random.h"
 
 namespace gradwright {
@@ -172,6 +173,17 @@ void add_pile(Engine& e, int n, std::uint64_t seed) {
                      .radius = kRadius * (0.8 + 0.2 * random.uniform())});
 }
 
+TEST(CubeRoots, of_a_vectors_width_are_those_of_the_library) {
+    for (double x = 1e-60; x < 1e3; x *= 1.0007) {
+        double v[4] = {x, 1.3 * x, 0, 7.1 * x};
+        cube_roots(v);
+        EXPECT_NEAR(v[0] / std::cbrt(x), 1, 1e-15) << x;
+        EXPECT_NEAR(v[1] / std::cbrt(1.3 * x), 1, 1e-15) << x;
+        EXPECT_NEAR(v[3] / std::cbrt(7.1 * x), 1, 1e-15) << x;
+        EXPECT_EQ(v[2], 0);
+    }
+}
+
 TEST(Sleep, a_settled_pile_lies_where_it_lies_without_sleep) {
     EngineOptions o = bare(Precision::single_law);
     o.gravity = {0, 0, -9.81};
@@ -232,6 +244,42 @@ TEST(Sleep, a_sleeping_grain_wakes_when_it_is_hit) {
     const double before = e.state().x[index_of(e, sleeper)];
     e.advance(30000);
     EXPECT_GT(e.state().x[index_of(e, sleeper)], before + 0.5 * kRadius);
+}
+
+TEST(Sleep, a_sleeping_grain_wakes_when_a_moving_body_comes_near_and_not_before) {
+    EngineOptions o = bare();
+    o.gravity = {0, 0, -9.81};
+    o.sleep = true;
+    Engine e(o);
+    e.add_body(plane_z());
+    Body blade;
+    blade.kind = Body::Kind::box;
+    blade.x0 = -400 * kRadius, blade.x1 = -12 * kRadius;
+    blade.z0 = 0.5 * kRadius, blade.z1 = 10 * kRadius;
+    blade.speed_x = 0.03;
+    const int number = e.add_body(blade);
+    for (int k = 0; k < 8; ++k) e.add_grain({.x = 8 * kRadius * k, .z = 0.9999 * kRadius, .radius = kRadius});
+    e.advance(20000);
+    ASSERT_EQ(e.awake(), 0u);
+    e.start_bodies();
+    const double look = blade.speed_x * e.sleep_time();  // who sleeps is asked no less often
+    ASSERT_LT(look, 0.8 * kRadius);
+    int woken = 0;
+    for (int portion = 0; portion < 300; ++portion) {
+        e.advance(200);
+        const double face = blade.x1 + e.body_shift_x(number);
+        for (std::size_t i = 0; i < e.state().size(); ++i) {
+            const double ahead = e.state().x[i] - face;
+            if (ahead > 3.1 * kRadius && e.state().id[i] != 0) {
+                EXPECT_EQ(e.state().asleep[i], 1) << ahead / kRadius;
+            } else if (ahead > kRadius && ahead < 2.9 * kRadius - look) {
+                EXPECT_EQ(e.state().asleep[i], 0) << ahead / kRadius;
+                ++woken;
+            }
+        }
+        if (face > 3 * kRadius) break;  // soon the first grain, pushed along, meets the second
+    }
+    EXPECT_GT(woken, 5);
 }
 
 TEST(Removal, removed_grains_are_gone_and_the_others_stay_at_rest_at_once) {
@@ -359,7 +407,7 @@ TEST(Bodies, a_moving_body_pushes_and_a_stopped_one_does_not) {
     blade.x1 = 0;
     blade.z0 = -1e-3;
     blade.z1 = 1e-3;
-    blade.speed_x = 0.1;
+    blade.speed_x = 0.03;
     blade.material = 1;
     e.add_body(blade);
     e.add_grain({.x = 1.5 * kRadius, .radius = kRadius});
