@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -44,7 +45,8 @@ bool write_cache(const std::string& folder, const std::string& kind, const std::
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     const auto file = file_of(folder, kind, key);
-    const std::string aside = fmt::format("{}.{}.part", file.string(), ::getpid());
+    static std::atomic<int> written_so_far{0};  // several threads may keep something at once
+    const std::string aside = fmt::format("{}.{}-{}.part", file.string(), ::getpid(), written_so_far++);
     const int fd = ::open(aside.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
     if (fd < 0) return false;
     bool written = true;

@@ -174,6 +174,7 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
     if (study_.scale_up.on()) return extrapolate(map, design);
     map.health.status = "ok";
     const Design level = levelled(design);
+    std::vector<Scene> scenes;
     for (int i = 0; i < count; ++i) {
         const std::uint64_t packing_seed = seed == 0 ? map_seed(study_.seed, i) : seed + 2 * i;
         Scene scene = scene_of(study_, level, true, packing_seed);
@@ -184,13 +185,13 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
         } else {
             scene.powder[0] = scene.powder[powder];  // a spread without labels has powder A alone
         }
-        const SpreadResult result = runner_.spread(
-            scene, nullptr,
-            fmt::format("map spread {}{}", runner_.map_spreads + 1, powder == 0 ? "" : " with powder B"));
+        scenes.push_back(scene);
         if (i == 0) {
             map.scene = scene;
             map.seed = packing_seed;
         }
+    }
+    for (const SpreadResult& result : runner_.spread_maps(scenes, powder == 0 ? "" : " with powder B")) {
         map.grains += result.grains;
         map.steps += result.steps;
         map.grain_steps += result.grain_steps;

@@ -1,8 +1,13 @@
 #include "optimise/spread_runner.h"
 
 #include <fmt/format.h>
+#include <omp.h>
 
+#include <algorithm>
 #include <chrono>
+#include <future>
+#include <limits>
+#include <tuple>
 
 #include "dem/cache_file.h"
 #include "dem/spread_file.h"
@@ -24,8 +29,84 @@ std::string key_of(const Scene& scene, const PartitionCurve* partition, int snap
 
 }  // namespace
 
+int SpreadRunner::threads() const {
+    return options_.threads > 0 ? options_.threads : omp_get_max_threads();
+}
+
 SpreadResult SpreadRunner::spread(const Scene& scene, const PartitionCurve* partition,
                                   const std::string& stage, int snapshots) {
+    Progress progress;
+    if (options_.progress)
+        progress = [this, &stage](const std::string& part, double fraction) {
+            options_.progress(fmt::format("{}: {}", stage, part), fraction);
+        };
+    return spread_on(threads(), scene, partition, stage, snapshots, progress);
+}
+
+std::vector<SpreadResult> SpreadRunner::spread_maps(const std::vector<Scene>& scenes,
+                                                    const std::string& after) {
+    const auto name = [&](std::size_t k) {
+        return fmt::format("map spread {}{}", map_spreads + 1 + static_cast<int>(k), after);
+    };
+    // a stand-in engine is asked one after the other
+    const std::size_t abreast =
+        options_.spread ? 1 : std::min<std::size_t>(scenes.size(), std::max(1, threads()));
+    std::vector<SpreadResult> out;
+    for (std::size_t first = 0; first < scenes.size(); first += abreast) {
+        const std::size_t count = std::min(abreast, scenes.size() - first);
+        if (count == 1) {
+            out.push_back(spread(scenes[first], nullptr, name(first)));
+        } else {
+            // who is behind speaks for all
+            struct Place {
+                int stages = 0;
+                std::string stage;
+                double fraction = 0;
+            };
+            std::vector<Place> places(count);
+            const std::string all =
+                fmt::format("map spreads {} {} {}{}", map_spreads + 1 + static_cast<int>(first),
+                            count == 2 ? "and" : "to", map_spreads + static_cast<int>(first + count), after);
+            std::vector<std::future<SpreadResult>> running;
+            for (std::size_t k = 0; k < count; ++k)
+                running.push_back(std::async(std::launch::async, [&, k] {
+                    Progress progress;
+                    if (options_.progress)
+                        progress = [&, k](const std::string& part, double fraction) {
+                            const std::lock_guard lock(books_);
+                            Place& mine = places[k];
+                            mine.stages += part != mine.stage;
+                            mine.stage = part;
+                            mine.fraction = fraction;
+                            const Place& last = *std::min_element(
+                                places.begin(), places.end(), [](const Place& a, const Place& b) {
+                                    return std::tie(a.stages, a.fraction) < std::tie(b.stages, b.fraction);
+                                });
+                            if (last.stages > 0)
+                                options_.progress(fmt::format("{}: {}", all, last.stage), last.fraction);
+                        };
+                    const int own = threads() / static_cast<int>(count) +
+                                    (static_cast<int>(k) < threads() % static_cast<int>(count));
+                    SpreadResult result =
+                        spread_on(own, scenes[first + k], nullptr, name(first + k), 0, progress);
+                    const std::lock_guard lock(books_);
+                    places[k].stages = std::numeric_limits<int>::max();
+                    return result;
+                }));
+            for (auto& one : running) one.wait();  // all have ended before one throws
+            for (auto& one : running) out.push_back(one.get());
+        }
+        for (std::size_t k = first; k < out.size(); ++k)
+            if (!out[k].health.ok()) {
+                out.resize(k + 1);
+                return out;
+            }
+    }
+    return out;
+}
+
+SpreadResult SpreadRunner::spread_on(int threads, const Scene& scene, const PartitionCurve* partition,
+                                     const std::string& stage, int snapshots, const Progress& progress) {
     SpreadResult result;
     if (stopped()) {
         result.health.status = "interrupted";
@@ -50,26 +131,32 @@ SpreadResult SpreadRunner::spread(const Scene& scene, const PartitionCurve* part
         if (const auto bytes = read_cache(options_.spread_folder, "spread", key);
             bytes && read_spread(*bytes, result)) {
             result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+            const std::lock_guard lock(books_);
             seconds_saved += result.seconds_cold;
             return result;
         }
         result = SpreadResult{};
     }
     SpreadOptions options;
-    options.threads = options_.threads;
+    options.threads = threads;
     options.cache_folder = options_.cache_folder;
     options.snapshots = snapshots;
     options.stop = options_.stop;
-    if (options_.progress)
-        options.progress = [this, &stage](const Progress& progress) {
-            options_.progress(fmt::format("{}: {}", stage, progress.stage), progress.fraction);
+    if (progress)
+        options.progress = [&progress](const gradwright::Progress& now) {
+            progress(now.stage, now.fraction);
         };
     result =
         options_.spread ? options_.spread(scene, partition, options) : run_spread(scene, partition, options);
-    seconds_saved += result.seconds_cold > result.seconds ? result.seconds_cold - result.seconds : 0;
+    const double share = double(threads) / this->threads();
+    result.seconds *= share;
+    result.seconds_cold *= share;
     // Failed ones too: they would fail again. What was interrupted is not finished.
-    if (!options_.spread_folder.empty() && result.health.status != "interrupted" &&
-        !write_cache(options_.spread_folder, "spread", key, spread_bytes(result)) && on_loss)
+    const bool lost = !options_.spread_folder.empty() && result.health.status != "interrupted" &&
+                      !write_cache(options_.spread_folder, "spread", key, spread_bytes(result));
+    const std::lock_guard lock(books_);
+    seconds_saved += result.seconds_cold > result.seconds ? result.seconds_cold - result.seconds : 0;
+    if (lost && on_loss)
         on_loss(fmt::format("{} cannot be kept in {}: a run that dies cannot be resumed from it", stage,
                             options_.spread_folder));
     return result;

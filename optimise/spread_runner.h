@@ -2,8 +2,10 @@
 // was spent.
 #pragma once
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "optimise/design_run.h"
 
@@ -18,6 +20,11 @@ class SpreadRunner {
     /// may lead a search there.
     SpreadResult spread(const Scene& scene, const PartitionCurve* partition, const std::string& stage,
                         int snapshots = 0);
+    /// Several spreads without labels, one after the other's number: side by side as far as there are
+    /// threads, which on a small heap is faster than all threads on one after the other. The same bits either
+    /// way. Their `seconds` are shares of the machine, so that the sum is what all took. One that did not end
+    /// well is the last: what comes after it is not done, or thrown away.
+    std::vector<SpreadResult> spread_maps(const std::vector<Scene>& scenes, const std::string& after = "");
     bool stopped() const { return halted_ || (options_.stop && options_.stop->load()); }
     /// No further spread is to begin.
     void halt() { halted_ = true; }
@@ -30,7 +37,13 @@ class SpreadRunner {
     double seconds_saved = 0;                                ///< stored cost of what came from a cache [s]
 
   private:
+    using Progress = std::function<void(const std::string& stage, double fraction)>;
+    SpreadResult spread_on(int threads, const Scene& scene, const PartitionCurve* partition,
+                           const std::string& stage, int snapshots, const Progress& progress);
+    int threads() const;
+
     RunOptions options_;
+    std::mutex books_;  ///< over the account and what is told to the caller
     bool halted_ = false;
 };
 

@@ -407,7 +407,7 @@ TEST(Bodies, a_moving_body_pushes_and_a_stopped_one_does_not) {
     blade.x1 = 0;
     blade.z0 = -1e-3;
     blade.z1 = 1e-3;
-    blade.speed_x = 0.03;
+    blade.speed_x = 0.1;
     blade.material = 1;
     e.add_body(blade);
     e.add_grain({.x = 1.5 * kRadius, .radius = kRadius});
