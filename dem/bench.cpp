@@ -4,7 +4,9 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <thread>
@@ -31,6 +33,32 @@ std::string compiled_isa() {
 
 namespace {
 
+double core_round_trip() {
+    if (omp_get_num_procs() < 2) return std::numeric_limits<double>::quiet_NaN();
+    constexpr double kSeconds = 0.02;
+    constexpr int kAtOnce = 100;  // trips between two looks at the clock
+    alignas(64) std::atomic<int> turn{0};
+    double seconds = 0;
+    long trips = 0;
+#pragma omp parallel num_threads(2)
+    if (omp_get_num_threads() == 2) {
+        if (omp_get_thread_num() == 0) {
+            const double start = omp_get_wtime();
+            for (; seconds < kSeconds; seconds = omp_get_wtime() - start, trips += kAtOnce)
+                for (int k = 0; k < kAtOnce; ++k) {
+                    turn.store(1, std::memory_order_release);
+                    while (turn.load(std::memory_order_acquire) != 0) {
+                    }
+                }
+            turn.store(2, std::memory_order_release);
+        } else {
+            for (int now; (now = turn.load(std::memory_order_acquire)) != 2;)
+                if (now == 1) turn.store(0, std::memory_order_release);
+        }
+    }
+    return trips > 0 ? seconds / static_cast<double>(trips) : std::numeric_limits<double>::quiet_NaN();
+}
+
 BenchCase timed(Engine& engine, const std::string& name, int threads, long steps) {
     const EngineTimes before = engine.times();
     const double steps_before = engine.grain_steps(), start = omp_get_wtime();
@@ -54,6 +82,7 @@ BenchCase timed(Engine& engine, const std::string& name, int threads, long steps
         static_cast<double>(steps) / static_cast<double>(engine.times().near_lists - before.near_lists);
     c.steps_per_candidate_list = static_cast<double>(steps) /
                                  static_cast<double>(engine.times().candidate_lists - before.candidate_lists);
+    if (threads > 1) c.core_round_trip = core_round_trip();
     c.state_hash = engine.state_hash();
     if (!engine.failed().empty()) throw std::runtime_error("bench: " + name + ": " + engine.failed());
     return c;

@@ -1,6 +1,7 @@
 // The engine's own speed: settled and flowing beds of the default study's physics, by stage.
 #pragma once
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct BenchCase {
     double contacts_per_grain = 0;
     double steps_per_near_list = 0, steps_per_candidate_list = 0;  ///< infinite: none was made
     double near_pairs_per_grain = 0;  ///< pairs that the law sees, touching or not
+    /// A cache line from one thread's core to another's and back, at the time of this case [s]; NaN for one
+    /// thread. What two threads gain on a small heap depends on it.
+    double core_round_trip = std::numeric_limits<double>::quiet_NaN();
     std::string state_hash;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "dem/bed.h"
 #include "dem/bench.h"
@@ -424,8 +425,13 @@ TEST(Bench, a_large_bed_is_copies_of_a_small_one_without_a_seam) {
     EXPECT_EQ(two.grains, 2 * one.grains);
     EXPECT_NEAR(two.contacts_per_grain, one.contacts_per_grain, 0.1);
     EXPECT_EQ(two.awake_share, 1);
+    EXPECT_TRUE(std::isnan(two.core_round_trip));
     options.threads = {2};
-    EXPECT_EQ(run_bench(options).cases.at(0).state_hash, two.state_hash);
+    const BenchCase shared = run_bench(options).cases.at(0);
+    EXPECT_EQ(shared.state_hash, two.state_hash);
+    if (std::thread::hardware_concurrency() > 1) {
+        EXPECT_GT(shared.core_round_trip, 5e-9);
+    }
 }
 
 }  // namespace
