@@ -73,7 +73,7 @@ Bed cached_bed(const Scene& scene, const PartitionCurve* partition, const Spread
     const std::string key = bed_key(scene, partition);
     Bed bed;
     if (const auto bytes = read_cache(options.cache_folder, "bed", key); bytes && unpack(*bytes, bed)) {
-        bed.facts.seconds = omp_get_wtime() - start;
+        bed.facts.seconds = options.machine_share * (omp_get_wtime() - start);
         health.status = "ok";
         return bed;
     }

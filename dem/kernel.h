@@ -157,7 +157,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Leaves `tiles_before` and, in `sums`, the springs of what touches: the tiles may be overwritten.
     void keep_springs();
     /// `work(block)` for every block, if possible on the thread that sweeps it: its pairs stay in that core's
-    /// cache. Blocks in which nobody is awake, and what is left in the end, go to whoever has time.
+    /// cache. Blocks in which all sleep, and what is left in the end, go to whoever has time.
     template <class Work>
     void on_own_thread(Work&& work);
     /// Which grain of the block each of its candidates belongs to; stands until the thread asks again.

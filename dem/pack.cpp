@@ -432,7 +432,7 @@ Bed pack_bed(const Scene& scene, const PartitionCurve* partition, const SpreadOp
     f.speed_number = settling.speed_number();
     f.carried_weight_ratio = settling.carried();
     f.steps = engine.steps();
-    f.seconds = f.seconds_cold = omp_get_wtime() - start;
+    f.seconds = f.seconds_cold = options.machine_share * (omp_get_wtime() - start);
     return bed;
 }
 

@@ -67,7 +67,7 @@ SpreadResult run_spread(const Scene& scene, const PartitionCurve* partition, con
     if (const auto bytes = read_cache(options.cache_folder, "map", key); bytes && read_spread(*bytes, out)) {
         out.bed.from_cache = true;
         out.bed.seconds = 0;
-        out.seconds = omp_get_wtime() - start;
+        out.seconds = options.machine_share * (omp_get_wtime() - start);
         return out;
     }
     out = spread_now(scene, partition, options);
@@ -95,7 +95,7 @@ SpreadResult spread_now(const Scene& scene, const PartitionCurve* partition, con
         out.health = health;
     }
     out.bed = stage.bed.facts;
-    out.seconds = omp_get_wtime() - start;
+    out.seconds = options.machine_share * (omp_get_wtime() - start);
     out.seconds_cold = out.seconds - out.bed.seconds + out.bed.seconds_cold;
     return out;
 }
@@ -164,7 +164,7 @@ class Spreading {
                     "overlap reached {:.1f} % of the radius (3 % is the rule): raise numerics.softening",
                     100 * out_.health.max_overlap_ratio));
         out_.energy = engine_.energy();
-        out_.seconds = out_.seconds_cold = omp_get_wtime() - start;
+        out_.seconds = out_.seconds_cold = options_.machine_share * (omp_get_wtime() - start);
         return std::move(out_);
     }
 

@@ -18,7 +18,9 @@ struct Progress {
 };
 
 struct SpreadOptions {
-    int threads = 0;           ///< 0 = OpenMP's default
+    int threads = 0;  ///< 0 = OpenMP's default
+    double machine_share =
+        1;  ///< of it that this spread has while others run beside it: seconds count so much
     std::string cache_folder;  ///< settled beds; empty = no cache
     int snapshots = 0;  ///< instants of the last pass kept between first and last; 0 = none but those two
     std::function<void(const Progress&)> progress;
@@ -54,13 +56,14 @@ struct SpreadResult {
     long pinched_grains = 0;  ///< pressed into the yielding blade by more than 5 % of their radius, mostly at
                               ///< the dispenser's rim
     long steps = 0;
-    double grain_steps = 0;                ///< awake grain-steps: forces evaluated
-    double all_grain_steps = 0;            ///< steps x mobile grains, sleeping ones included
-    double time_step = 0;                  ///< [s]
-    double bond_number = 0;                ///< F_po/(m g) of the median grain, as computed
-    double seconds = 0, seconds_cold = 0;  ///< wall; cold adds the stored cost of what came from a cache
-    std::string state_hash;                ///< of positions and velocities at the end, of every pass
-    EnergyLedger energy;                   ///< of the spread, from the blade's start; with `energy_account`
+    double grain_steps = 0;      ///< awake grain-steps: forces evaluated
+    double all_grain_steps = 0;  ///< steps x mobile grains, sleeping ones included
+    double time_step = 0;        ///< [s]
+    double bond_number = 0;      ///< F_po/(m g) of the median grain, as computed
+    /// Wall times share of the machine; cold adds the stored cost of what came from a cache [s].
+    double seconds = 0, seconds_cold = 0;
+    std::string state_hash;  ///< of positions and velocities at the end, of every pass
+    EnergyLedger energy;     ///< of the spread, from the blade's start; with `energy_account`
 };
 
 /// One spread. `partition`: null = no labels (all grains have powder A's material and sizes: an origin-map

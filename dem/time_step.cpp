@@ -56,7 +56,7 @@ void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) c
 template <class T>
 [[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_met(std::int32_t first, std::int32_t last,
                                                                   bool reading) const {
-    for (std::int32_t grain = first; grain <= last; grain += 2) {  // two grains a cache line
+    for (std::int32_t grain = first; grain <= last; grain += 2) {  // two a cache line, of the wide law
         __builtin_prefetch(&sums[grain], 1);
         if (reading) {
             __builtin_prefetch(&e.state_.place[grain], 0);
@@ -254,7 +254,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
     if (e.bodies_move_) e.body_time_ += dt * done;
     e.grain_steps_ += static_cast<double>(done) * static_cast<double>(e.awake_.size());
     const double seconds = omp_get_wtime() - start, looked = law_seconds + grain_seconds;
-    e.times_.law += looked > 0 ? seconds * law_seconds / looked : 0;
+    e.times_.law += looked > 0 ? seconds * law_seconds / looked : seconds;  // too few steps to look
     e.times_.grains += looked > 0 ? seconds * grain_seconds / looked : 0;
     return done;
 }

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/speed-against-error.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_speed.py [tradeoff] [reduced] [threads] [sizes] [lammps]
+    python3 docs/make_speed.py [tradeoff] [reduced] [threads] [heap] [sizes] [lammps]
 
 Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` takes
-about twenty minutes on two free cores, `reduced` seven, `threads` a minute once its bed is cached, `sizes` some minutes. Nothing else may run meanwhile.
+about twenty minutes on two free cores, `reduced` seven, `threads` and `heap` a minute each once their beds are cached, `sizes` some minutes. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
 import json
@@ -27,6 +27,7 @@ TRADEOFF = ["tradeoff", "examples/01_linear_coupon.toml", "--around", "study", "
             "--set", 'numerics.reductions=["fines_cut", "shallow_bed", "strip_map"]', "--set", "numerics.time_step.rayleigh_fraction=0.2"]
 THREADS = ["bench", "--grains", "17000", "--threads", "1", "--threads", "2", "--state", "settled", "--state", "flowing", "--steps", "2000"]
 SIZES = ["bench", "--grains", "7000", "--grains", "20000", "--grains", "70000", "--grains", "200000", "--grains", "700000", "--threads", "1", "--steps", "100"]
+HEAP = ["bench", "--state", "spread", "--grains", "20000", "--threads", "1", "--threads", "2", "--steps", "8000"]
 LAMMPS = ["crosscheck", "lammps", "examples/01_linear_coupon.toml", "--speed", "--full-width"]
 
 
@@ -57,9 +58,11 @@ def tradeoff_table(name, words):
 def bench_table(name, words, by):
     a = answer(name, words)
     rows = [f"`{shown(words)}` on {a['host']['cores']} cores, {a['host']['isa']}:\n",
-            "| state | grains | threads | million grain-steps/s | a thread | bytes a grain | contacts a grain |", "|---|---|---|---|---|---|---|"]
+            "| state | grains | threads | million grain-steps/s | a thread | bytes a grain | contacts a grain |" + (" core to core and back, ns |" if by == "threads" else ""),
+            "|---|---|---|---|---|---|---|" + ("---|" if by == "threads" else "")]
     for c in a["cases"]:
-        rows.append(f"| {c['name']} | {c['grains']} | {c['threads']} | {c['grain_steps_per_second'] / 1e6:.1f} | {c['grain_steps_per_second'] / 1e6 / c['threads']:.1f} | {c['bytes_per_grain']:.0f} | {c['contacts_per_grain']:.2f} |")
+        trip = "" if by != "threads" else " |" if c["core_round_trip_ns"] is None else f" {c['core_round_trip_ns']:.0f} |"
+        rows.append(f"| {c['name']} | {c['grains']} | {c['threads']} | {c['grain_steps_per_second'] / 1e6:.1f} | {c['grain_steps_per_second'] / 1e6 / c['threads']:.1f} | {c['bytes_per_grain']:.0f} | {c['contacts_per_grain']:.2f} |{trip}")
     if by == "threads":
         for state in dict.fromkeys(c["name"] for c in a["cases"]):
             of = {c["threads"]: c["grain_steps_per_second"] for c in a["cases"] if c["name"] == state}
@@ -67,6 +70,17 @@ def bench_table(name, words, by):
     else:
         speeds = [c["grain_steps_per_second"] for c in a["cases"]]
         rows.append(f"\nCost of a grain-step, dearest size over cheapest: {max(speeds) / min(speeds):.2f}.")
+    return "\n".join(rows)
+
+
+def heap_table():
+    """The same command at four times: the cores of a virtual machine are not always the same distance apart."""
+    rows = [f"`{shown(HEAP)}`, four times, some minutes apart:\n",
+            "| awake grains | one thread, million grain-steps/s | two threads | ratio | core to core and back, ns |", "|---|---|---|---|---|"]
+    for k in range(1, 5):
+        one, two = answer(f"heap-{k}", HEAP)["cases"]
+        speed = [c["grain_steps_per_second"] / 1e6 for c in (one, two)]
+        rows.append(f"| {one['grains'] * one['awake_share']:.0f} of {one['grains']} | {speed[0]:.1f} | {speed[1]:.1f} | {speed[1] / speed[0]:.2f} | {two['core_round_trip_ns']:.0f} |")
     return "\n".join(rows)
 
 
@@ -93,7 +107,7 @@ def keep_levels():
         file.write("\n")
 
 
-TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: bench_table("threads", THREADS, "threads"), "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
+TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: bench_table("threads", THREADS, "threads"), "heap": heap_table, "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
 measured.fill(PAGE, TABLES)
 if {"tradeoff", "reduced"} & set(sys.argv[1:] or TABLES):
     keep_levels()

@@ -4,8 +4,8 @@
 // sides move by the same law at every y, so there every laid grain tells of every y, by where it came from
 // (homogeneous_estimator.h), and without a slot in the bed in the mirror too: half the noise of bins that
 // count their own grains only. Those bins are kept
-// beside it (`plain_check`), and are what is quoted when they contradict it, or where powders, sides or fills
-// allow no such reading.
+// beside it (`plain_check`), and are what is quoted when they contradict it as the bed lies, or where
+// powders, sides or fills allow no such reading.
 #pragma once
 #include "optimise/chamber_fill.h"
 #include "optimise/journal.h"

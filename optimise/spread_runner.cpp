@@ -48,12 +48,21 @@ std::vector<SpreadResult> SpreadRunner::spread_maps(const std::vector<Scene>& sc
     const auto name = [&](std::size_t k) {
         return fmt::format("map spread {}{}", map_spreads + 1 + static_cast<int>(k), after);
     };
-    // a stand-in engine is asked one after the other
+    // What cannot be spread is the last. A stand-in engine has its own idea of that, and is asked one after
+    // the other; so are threads bound to cores, for those begun here would all be bound to this one's.
+    const auto impossible = [this](const Scene& scene) {
+        const std::vector<SceneProblem> problems = validate(scene);
+        return !options_.spread && std::any_of(problems.begin(), problems.end(),
+                                               [](const SceneProblem& one) { return one.fatal; });
+    };
+    const auto bad = std::find_if(scenes.begin(), scenes.end(), impossible);
+    const std::size_t wanted = static_cast<std::size_t>(bad - scenes.begin()) + (bad != scenes.end());
+    const bool one_by_one = options_.spread || omp_get_proc_bind() != omp_proc_bind_false;
     const std::size_t abreast =
-        options_.spread ? 1 : std::min<std::size_t>(scenes.size(), std::max(1, threads()));
+        one_by_one ? 1 : std::min<std::size_t>(wanted, static_cast<std::size_t>(std::max(1, threads())));
     std::vector<SpreadResult> out;
-    for (std::size_t first = 0; first < scenes.size(); first += abreast) {
-        const std::size_t count = std::min(abreast, scenes.size() - first);
+    for (std::size_t first = 0; first < wanted; first += abreast) {
+        const std::size_t count = std::min(abreast, wanted - first);
         if (count == 1) {
             out.push_back(spread(scenes[first], nullptr, name(first)));
         } else {
@@ -87,11 +96,15 @@ std::vector<SpreadResult> SpreadRunner::spread_maps(const std::vector<Scene>& sc
                         };
                     const int own = threads() / static_cast<int>(count) +
                                     (static_cast<int>(k) < threads() % static_cast<int>(count));
-                    SpreadResult result =
-                        spread_on(own, scenes[first + k], nullptr, name(first + k), 0, progress);
-                    const std::lock_guard lock(books_);
-                    places[k].stages = std::numeric_limits<int>::max();
-                    return result;
+                    struct Done {
+                        std::mutex& books;
+                        Place& place;
+                        ~Done() {
+                            const std::lock_guard lock(books);
+                            place.stages = std::numeric_limits<int>::max();
+                        }
+                    } done{books_, places[k]};
+                    return spread_on(own, scenes[first + k], nullptr, name(first + k), 0, progress);
                 }));
             for (auto& one : running) one.wait();  // all have ended before one throws
             for (auto& one : running) out.push_back(one.get());
@@ -139,6 +152,7 @@ SpreadResult SpreadRunner::spread_on(int threads, const Scene& scene, const Part
     }
     SpreadOptions options;
     options.threads = threads;
+    options.machine_share = double(threads) / this->threads();
     options.cache_folder = options_.cache_folder;
     options.snapshots = snapshots;
     options.stop = options_.stop;
@@ -148,9 +162,6 @@ SpreadResult SpreadRunner::spread_on(int threads, const Scene& scene, const Part
         };
     result =
         options_.spread ? options_.spread(scene, partition, options) : run_spread(scene, partition, options);
-    const double share = double(threads) / this->threads();
-    result.seconds *= share;
-    result.seconds_cold *= share;
     // Failed ones too: they would fail again. What was interrupted is not finished.
     const bool lost = !options_.spread_folder.empty() && result.health.status != "interrupted" &&
                       !write_cache(options_.spread_folder, "spread", key, spread_bytes(result));

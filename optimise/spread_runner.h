@@ -22,8 +22,8 @@ class SpreadRunner {
                         int snapshots = 0);
     /// Several spreads without labels, one after the other's number: side by side as far as there are
     /// threads, which on a small heap is faster than all threads on one after the other. The same bits either
-    /// way. Their `seconds` are shares of the machine, so that the sum is what all took. One that did not end
-    /// well is the last: what comes after it is not done, or thrown away.
+    /// way. Their `seconds` count by each one's share of the machine, so that the sum is about what all took.
+    /// One that did not end well is the last: what comes after it is not done, or thrown away.
     std::vector<SpreadResult> spread_maps(const std::vector<Scene>& scenes, const std::string& after = "");
     bool stopped() const { return halted_ || (options_.stop && options_.stop->load()); }
     /// No further spread is to begin.

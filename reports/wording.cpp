@@ -215,9 +215,10 @@ Wording wording(const Study& study, const StudyResult& result) {
             words.sure += fmt::format(
                 " Periodic sides: every y has the same law, so every laid grain was read for every y by "
                 "where "
-                "it came from{}; bins of their own grains agree with that.",
+                "it came from; bins of their own grains agree with that.{}",
                 spreads_like_its_image(study)
-                    ? ", and for its mirror image, so that the numbers are of the average bed"
+                    ? " Its mirror image is as likely and was read too, so that the numbers are of the "
+                      "average bed."
                     : "");
     } else if (result.extrapolated) {
         const ScaledHeap& heap = *result.extrapolated;

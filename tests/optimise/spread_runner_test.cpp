@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 
 namespace gradwright {
@@ -55,8 +56,17 @@ TEST(SpreadMaps, side_by_side_are_the_same_bits_as_one_after_the_other) {
             };
         }
         SpreadRunner runner(options);
+        const auto begun = std::chrono::steady_clock::now();
         got[threads - 1] = runner.spread_maps(scenes);
+        const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
         EXPECT_EQ(runner.seconds_saved, 0);
+        double seconds = 0;  // two at once on half the machine each
+        for (const SpreadResult& one : got[threads - 1]) {
+            seconds += one.seconds;
+            EXPECT_EQ(one.seconds, one.seconds_cold);
+            EXPECT_LT(one.bed.seconds, one.seconds);
+        }
+        EXPECT_LE(seconds, wall);
     }
     ASSERT_EQ(got[0].size(), 3u);
     ASSERT_EQ(got[1].size(), 3u);
