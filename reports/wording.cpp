@@ -217,7 +217,7 @@ Wording wording(const Study& study, const StudyResult& result) {
                 "where "
                 "it came from; bins of their own grains agree with that.{}",
                 spreads_like_its_image(study)
-                    ? " Its mirror image is as likely and was read too, so that the numbers are of the "
+                    ? " The bed's mirror image is as likely and was read too, so that the numbers are of the "
                       "average bed."
                     : "");
     } else if (result.extrapolated) {
