@@ -58,7 +58,7 @@ TEST(SpreadMaps, side_by_side_are_the_same_bits_as_one_after_the_other) {
     }
     EXPECT_NE(got[0][0].state_hash, got[0][1].state_hash);
 
-    // who is behind speaks for both; within a stage nothing goes backwards
+    // one voice for both; within a stage nothing goes backwards
     ASSERT_FALSE(told.empty());
     bool pair = false, third = false;
     for (std::size_t k = 0; k < told.size(); ++k) {
