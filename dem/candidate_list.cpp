@@ -320,12 +320,10 @@ void Engine::update_sleep() {
                 if (near.distance < kWakes * s.radius[i]) disturb(i);
             }
         }
-        std::vector<std::uint8_t> next(s.asleep);
-        for (std::size_t i = 0; i < n; ++i)
-            if (manner[i] & kSleeper) next[i] = !disturbed[i];  // a drowsy one has that bit too
         for (std::size_t i = 0; i < n; ++i) {
-            if (next[i] == s.asleep[i]) continue;
-            s.asleep[i] = next[i];
+            // a drowsy one has that bit too
+            if (!(manner[i] & kSleeper) || s.asleep[i] == !disturbed[i]) continue;
+            s.asleep[i] = !disturbed[i];
             s.quiet[i] = 0;
             s.vx[i] = s.vy[i] = s.vz[i] = s.wx[i] = s.wy[i] = s.wz[i] = 0;
             lists_valid_ = false;  // records must be written anew

@@ -19,8 +19,8 @@ struct Progress {
 
 struct SpreadOptions {
     int threads = 0;  ///< 0 = OpenMP's default
-    double machine_share =
-        1;  ///< of it that this spread has while others run beside it: seconds count so much
+    /// Of the machine, that this spread has while others run beside it: its seconds count so much.
+    double machine_share = 1;
     std::string cache_folder;  ///< settled beds; empty = no cache
     int snapshots = 0;  ///< instants of the last pass kept between first and last; 0 = none but those two
     std::function<void(const Progress&)> progress;

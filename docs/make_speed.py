@@ -3,8 +3,8 @@
 
     python3 docs/make_speed.py [tradeoff] [reduced] [threads] [heap] [sizes] [lammps]
 
-Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` takes
-about twenty minutes on two free cores, `reduced` seven, `threads` and `heap` a minute each once their beds are cached, `sizes` some minutes. Nothing else may run meanwhile.
+Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` and
+`reduced` together take a quarter of an hour on two free cores, `threads` and `heap` a minute each once their beds are cached, `sizes` some minutes. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
 import json

@@ -29,8 +29,23 @@ std::string key_of(const Scene& scene, const PartitionCurve* partition, int snap
 
 }  // namespace
 
-int SpreadRunner::threads() const {
-    return options_.threads > 0 ? options_.threads : omp_get_max_threads();
+const SlowestProgress::Standing& SlowestProgress::tell(std::size_t k, const std::string& stage,
+                                                       double fraction) {
+    Standing& mine = runs_[k];
+    mine.stages += stage != mine.stage;
+    mine.stage = stage;
+    mine.fraction = fraction;
+    return *std::min_element(runs_.begin(), runs_.end(), [](const Standing& a, const Standing& b) {
+        return std::tie(a.stages, a.fraction) < std::tie(b.stages, b.fraction);
+    });
+}
+
+void SlowestProgress::end(std::size_t k) {
+    runs_[k].stages = std::numeric_limits<int>::max();
+}
+
+SpreadRunner::SpreadRunner(const RunOptions& options) : options_(options) {
+    if (options_.threads <= 0) options_.threads = omp_get_max_threads();
 }
 
 SpreadResult SpreadRunner::spread(const Scene& scene, const PartitionCurve* partition,
@@ -40,7 +55,7 @@ SpreadResult SpreadRunner::spread(const Scene& scene, const PartitionCurve* part
         progress = [this, &stage](const std::string& part, double fraction) {
             options_.progress(fmt::format("{}: {}", stage, part), fraction);
         };
-    return spread_on(threads(), scene, partition, stage, snapshots, progress);
+    return spread_on(options_.threads, scene, partition, stage, snapshots, progress);
 }
 
 std::vector<SpreadResult> SpreadRunner::spread_maps(const std::vector<Scene>& scenes,
@@ -58,21 +73,14 @@ std::vector<SpreadResult> SpreadRunner::spread_maps(const std::vector<Scene>& sc
     const auto bad = std::find_if(scenes.begin(), scenes.end(), impossible);
     const std::size_t wanted = static_cast<std::size_t>(bad - scenes.begin()) + (bad != scenes.end());
     const bool one_by_one = options_.spread || omp_get_proc_bind() != omp_proc_bind_false;
-    const std::size_t abreast =
-        one_by_one ? 1 : std::min<std::size_t>(wanted, static_cast<std::size_t>(std::max(1, threads())));
+    const std::size_t abreast = one_by_one ? 1 : std::min(wanted, static_cast<std::size_t>(options_.threads));
     std::vector<SpreadResult> out;
     for (std::size_t first = 0; first < wanted; first += abreast) {
         const std::size_t count = std::min(abreast, wanted - first);
         if (count == 1) {
             out.push_back(spread(scenes[first], nullptr, name(first)));
         } else {
-            // who is behind speaks for all
-            struct Place {
-                int stages = 0;
-                std::string stage;
-                double fraction = 0;
-            };
-            std::vector<Place> places(count);
+            SlowestProgress slowest(count);
             const std::string all =
                 fmt::format("map spreads {} {} {}{}", map_spreads + 1 + static_cast<int>(first),
                             count == 2 ? "and" : "to", map_spreads + static_cast<int>(first + count), after);
@@ -83,27 +91,21 @@ std::vector<SpreadResult> SpreadRunner::spread_maps(const std::vector<Scene>& sc
                     if (options_.progress)
                         progress = [&, k](const std::string& part, double fraction) {
                             const std::lock_guard lock(books_);
-                            Place& mine = places[k];
-                            mine.stages += part != mine.stage;
-                            mine.stage = part;
-                            mine.fraction = fraction;
-                            const Place& last = *std::min_element(
-                                places.begin(), places.end(), [](const Place& a, const Place& b) {
-                                    return std::tie(a.stages, a.fraction) < std::tie(b.stages, b.fraction);
-                                });
-                            if (last.stages > 0)
-                                options_.progress(fmt::format("{}: {}", all, last.stage), last.fraction);
+                            const auto& behind = slowest.tell(k, part, fraction);
+                            if (behind.stages > 0)
+                                options_.progress(fmt::format("{}: {}", all, behind.stage), behind.fraction);
                         };
-                    const int own = threads() / static_cast<int>(count) +
-                                    (static_cast<int>(k) < threads() % static_cast<int>(count));
-                    struct Done {
+                    const int runs = static_cast<int>(count),
+                              own = options_.threads / runs + (int(k) < options_.threads % runs);
+                    struct Ending {
                         std::mutex& books;
-                        Place& place;
-                        ~Done() {
+                        SlowestProgress& slowest;
+                        std::size_t k;
+                        ~Ending() {
                             const std::lock_guard lock(books);
-                            place.stages = std::numeric_limits<int>::max();
+                            slowest.end(k);
                         }
-                    } done{books_, places[k]};
+                    } ending{books_, slowest, k};
                     return spread_on(own, scenes[first + k], nullptr, name(first + k), 0, progress);
                 }));
             for (auto& one : running) one.wait();  // all have ended before one throws
@@ -152,7 +154,7 @@ SpreadResult SpreadRunner::spread_on(int threads, const Scene& scene, const Part
     }
     SpreadOptions options;
     options.threads = threads;
-    options.machine_share = double(threads) / this->threads();
+    options.machine_share = double(threads) / options_.threads;
     options.cache_folder = options_.cache_folder;
     options.snapshots = snapshots;
     options.stop = options_.stop;

@@ -11,9 +11,26 @@
 
 namespace gradwright {
 
+/// The progress of several runs that go through the same stages, as one: who is behind speaks for all.
+class SlowestProgress {
+  public:
+    explicit SlowestProgress(std::size_t runs) : runs_(runs) {}
+    struct Standing {
+        int stages = 0;  ///< entered so far
+        std::string stage;
+        double fraction = 0;
+    };
+    /// Run `k` is so far now. Returns the one behind; `stages` is 0 while one of them has not begun.
+    const Standing& tell(std::size_t k, const std::string& stage, double fraction);
+    void end(std::size_t k);
+
+  private:
+    std::vector<Standing> runs_;
+};
+
 class SpreadRunner {
   public:
-    explicit SpreadRunner(const RunOptions& options) : options_(options) {}
+    explicit SpreadRunner(const RunOptions& options);
 
     /// One spread; `stage` is what people read meanwhile ("map spread 1"). Checks the scene first: a scene
     /// that `validate` finds impossible returns status "invalid" with the reasons, for the motion variables
@@ -40,10 +57,9 @@ class SpreadRunner {
     using Progress = std::function<void(const std::string& stage, double fraction)>;
     SpreadResult spread_on(int threads, const Scene& scene, const PartitionCurve* partition,
                            const std::string& stage, int snapshots, const Progress& progress);
-    int threads() const;
 
-    RunOptions options_;
-    std::mutex books_;  ///< over the account and what is told to the caller
+    RunOptions options_;  ///< with the number of threads that 0 stands for
+    std::mutex books_;    ///< over the account and what is told to the caller
     bool halted_ = false;
 };
 

@@ -20,6 +20,19 @@ struct Told {
     double fraction;
 };
 
+TEST(SlowestProgress, is_that_of_the_run_behind_in_stage_or_fraction_until_it_ends) {
+    SlowestProgress two(2);
+    EXPECT_EQ(two.tell(0, "pack", 0.5).stages, 0);  // the other has not begun
+    EXPECT_EQ(two.tell(1, "pack", 0.2).fraction, 0.2);
+    EXPECT_EQ(two.tell(1, "pack", 0.7).fraction, 0.5);
+    EXPECT_EQ(two.tell(1, "spread", 0.1).stage, "pack");
+    const auto behind = two.tell(0, "spread", 0.3);
+    EXPECT_EQ(behind.stage, "spread");
+    EXPECT_EQ(behind.fraction, 0.1);
+    two.end(1);
+    EXPECT_EQ(two.tell(0, "spread", 0.4).fraction, 0.4);
+}
+
 TEST(SpreadMaps, side_by_side_are_the_same_bits_as_one_after_the_other) {
     const std::vector<Scene> scenes = {tiny_scene(3), tiny_scene(5), tiny_scene(7)};
     const std::string folder = ::testing::TempDir() + "/spread_maps_side_by_side";
