@@ -219,26 +219,18 @@ void Engine::KernelOf<T>::write_constants(PairTile& t, int lanes) {
     }
 }
 
+// What becomes of a candidate: its code is that of none, of one that is only near, or stays as it was of
+// one that touches. Such a pair of which both stand still is parked: it keeps its history and is not
+// computed. Over the candidates of a block one after the other, whoever's they are: a grain has four, and
+// a loop as short as that, or a jump on what becomes of one, is not foreseen by the processor.
 template <class T>
-void Engine::KernelOf<T>::rebuild_near() {
+void Engine::KernelOf<T>::sort_candidates(const std::vector<float>& signed_reach) {
     const auto& s = e.state_;
     const std::size_t n = s.size();
-    if (e.candidate_slot_.size() != e.candidate_.size()) e.candidate_slot_.assign(e.candidate_.size(), kNone);
-    keep_springs();
     const double period = e.options_.period_y, inv_period = period > 0 ? 1 / period : 0;
     const double period_x = e.options_.period_x, inv_period_x = period_x > 0 ? 1 / period_x : 0;
     const double period_z = e.options_.period_z, inv_period_z = period_z > 0 ? 1 / period_z : 0;
     const bool small_gas = inv_period_x != 0 || inv_period_z != 0;
-    std::vector<float> signed_reach(n);  // < 0: it stands still
-#pragma omp parallel for schedule(static) num_threads(e.threads_)
-    for (std::size_t i = 0; i < n; ++i)
-        signed_reach[i] = s.fixed[i] | s.asleep[i] ? -e.reach_[i] : e.reach_[i];
-    if (tiles_before.empty()) tiles_before.push_back({0, 0});  // what a candidate without history looks up
-
-    // What becomes of a candidate: its code is that of none, of one that is only near, or stays as it was of
-    // one that touches. Such a pair of which both stand still is parked: it keeps its history and is not
-    // computed. Over the candidates of a block one after the other, whoever's they are: a grain has four, and
-    // a loop as short as that, or a jump on what becomes of one, is not foreseen by the processor.
     blocks.assign((n + kBlock - 1) / kBlock, Block{});
     on_own_thread([&](std::size_t b) {
         constexpr int kLanes = 8;
@@ -299,23 +291,11 @@ void Engine::KernelOf<T>::rebuild_near() {
         blocks[b].own_end = touching + apart;
         blocks[b].own_parked = parked;
     });
-    // Slots of the active pairs; every block begins on a tile of its own. Those that touch come first: a tile
-    // in which nothing touches costs a quarter (contact_pass.cpp).
-    std::int32_t next = 0, next_parked = 0;
-    for (Block& block : blocks) {
-        next = (next + W - 1) / W * W;
-        block.first_tile = next / W;
-        next += block.own_end;
-        block.own_end = next;
-        block.end_tile = (next + W - 1) / W;
-        next_parked += std::exchange(block.own_parked, next_parked);
-    }
-    active_slots = next;
-    parked_slots = next_parked;
-    const std::size_t active_tiles = (active_slots + W - 1) / W, parked_tiles = (parked_slots + W - 1) / W;
-    tiles.resize(active_tiles + parked_tiles);
-    if (has_rolls) rolls.resize(tiles.size());
+}
 
+template <class T>
+void Engine::KernelOf<T>::fill_tiles(const std::vector<float>& signed_reach) {
+    const std::size_t n = e.state_.size(), active_tiles = (active_slots + W - 1) / W;
     auto pad = [&](std::size_t from, std::size_t to) {
         for (std::size_t slot = from; slot < to; ++slot) {
             PairTile& t = tiles[slot / W];
@@ -392,8 +372,38 @@ void Engine::KernelOf<T>::rebuild_near() {
             write_constants(tiles[k], std::min<std::int32_t>(W, block.own_end - k * W));
         pad(block.own_end, static_cast<std::size_t>(block.end_tile) * W);
     });
-    pad(active_tiles * W + parked_slots, (active_tiles + parked_tiles) * W);
+    pad(active_tiles * W + parked_slots, tiles.size() * W);
+}
 
+template <class T>
+void Engine::KernelOf<T>::rebuild_near() {
+    const auto& s = e.state_;
+    const std::size_t n = s.size();
+    if (e.candidate_slot_.size() != e.candidate_.size()) e.candidate_slot_.assign(e.candidate_.size(), kNone);
+    keep_springs();
+    if (tiles_before.empty()) tiles_before.push_back({0, 0});  // what a candidate without history looks up
+    std::vector<float> signed_reach(n);                        // < 0: it stands still
+#pragma omp parallel for schedule(static) num_threads(e.threads_)
+    for (std::size_t i = 0; i < n; ++i)
+        signed_reach[i] = s.fixed[i] | s.asleep[i] ? -e.reach_[i] : e.reach_[i];
+    sort_candidates(signed_reach);
+    // Slots of the active pairs; every block begins on a tile of its own. Those that touch come first: a tile
+    // in which nothing touches costs a quarter (contact_pass.cpp).
+    std::int32_t next = 0, next_parked = 0;
+    for (Block& block : blocks) {
+        next = (next + W - 1) / W * W;
+        block.first_tile = next / W;
+        next += block.own_end;
+        block.own_end = next;
+        block.end_tile = (next + W - 1) / W;
+        next_parked += std::exchange(block.own_parked, next_parked);
+    }
+    active_slots = next;
+    parked_slots = next_parked;
+    const std::size_t active_tiles = (active_slots + W - 1) / W, parked_tiles = (parked_slots + W - 1) / W;
+    tiles.resize(active_tiles + parked_tiles);
+    if (has_rolls) rolls.resize(tiles.size());
+    fill_tiles(signed_reach);
     rebuild_walls();
     for (std::size_t b = 0, k = 0; b < blocks.size(); ++b) {
         blocks[b].first_awake = static_cast<std::int32_t>(k);

@@ -160,6 +160,11 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// cache. Blocks in which all sleep, and what is left in the end, go to whoever has time.
     template <class Work>
     void on_own_thread(Work&& work);
+    /// What becomes of every candidate, and how many pairs of a kind each block has. `signed_reach`: of each
+    /// grain, < 0 where it stands still.
+    void sort_candidates(const std::vector<float>& signed_reach);
+    /// The pairs and what they remember into the tiles.
+    void fill_tiles(const std::vector<float>& signed_reach);
     /// Which grain of the block each of its candidates belongs to; stands until the thread asks again.
     const std::uint8_t* owners(std::size_t block) const;
     /// What the first `lanes` pairs of a tile are made of, from their grains.
