@@ -126,6 +126,10 @@ BenchCase of_bed(const Scene& tile, const Bed& one, int copies, bool flowing, in
     add_end_walls(engine, scene);
     add_side_walls(engine, scene);
     engine.advance(200);
+    // The first list of pairs knows of no contact yet and mixes pairs that touch with those that do not; every
+    // later one puts them apart, and is a fifth faster. A bed at rest would keep the first one all the time.
+    engine.refresh();
+    engine.advance(1);
     if (flowing) {
         const auto speed = [&engine] {
             double sum = 0;
