@@ -40,6 +40,7 @@ nlohmann::json bench_json(const BenchResult& result) {
                          {"steps_per_near_list", number(one.steps_per_near_list)},
                          {"steps_per_candidate_list", number(one.steps_per_candidate_list)},
                          {"near_pairs_per_grain", number(one.near_pairs_per_grain)},
+                         {"steps_at_once", one.steps_at_once},
                          {"core_round_trip_ns", number(1e9 * one.core_round_trip)},
                          {"state_hash", one.state_hash}});
     }
@@ -56,6 +57,8 @@ void print_bench(const BenchResult& result) {
             one.name, one.grains, 100 * one.awake_share, one.threads, one.threads == 1 ? "" : "s",
             one.grain_steps_per_second / 1e6, one.grain_steps_per_second / 1e6 / std::max(1, one.threads),
             one.bytes_per_grain, one.contacts_per_grain);
+        if (one.steps_at_once > 1)
+            fmt::print("    {} steps at once: the bed does not fit in the cache\n", one.steps_at_once);
         if (std::isfinite(one.core_round_trip))
             fmt::print("    from one thread's core to the other's and back in {:.0f} ns\n",
                        1e9 * one.core_round_trip);

@@ -77,6 +77,7 @@ BenchCase timed(Engine& engine, const std::string& name, int threads, long steps
                 {"candidates", engine.times().candidates - before.candidates}};
     c.bytes_per_grain = engine.memory_bytes() / static_cast<double>(engine.state().size());
     c.contacts_per_grain = static_cast<double>(engine.contacts()) / static_cast<double>(engine.mobile());
+    c.steps_at_once = engine.steps_at_once();
     c.near_pairs_per_grain = static_cast<double>(engine.near_pairs()) / static_cast<double>(engine.mobile());
     c.steps_per_near_list =
         static_cast<double>(steps) / static_cast<double>(engine.times().near_lists - before.near_lists);
@@ -126,8 +127,9 @@ BenchCase of_bed(const Scene& tile, const Bed& one, int copies, bool flowing, in
     add_end_walls(engine, scene);
     add_side_walls(engine, scene);
     engine.advance(200);
-    // The first list of pairs knows of no contact yet and mixes pairs that touch with those that do not; every
-    // later one puts them apart, and is a fifth faster. A bed at rest would keep the first one all the time.
+    // The first list of pairs knows of no contact yet and mixes pairs that touch with those that do not;
+    // every later one puts them apart, and is a fifth faster. A bed at rest would keep the first one all the
+    // time.
     engine.refresh();
     engine.advance(1);
     if (flowing) {

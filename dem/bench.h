@@ -34,6 +34,7 @@ struct BenchCase {
     double bytes_per_grain = 0;
     double contacts_per_grain = 0;
     double steps_per_near_list = 0, steps_per_candidate_list = 0;  ///< infinite: none was made
+    int steps_at_once = 1;            ///< that a bed beyond the cache goes through together
     double near_pairs_per_grain = 0;  ///< pairs that the law sees, touching or not
     /// A cache line from one thread's core to another's and back, at the time of this case [s]; NaN for one
     /// thread. What two threads gain on a small heap depends on it.

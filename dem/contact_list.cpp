@@ -116,7 +116,7 @@ void Engine::KernelOf<T>::carry_history() {
 template <class T>
 void Engine::KernelOf<T>::keep_springs() {
     // One list of pairs and no copy of it: the next one is written over it, and only what a contact remembers
-    // is put aside, in the memory of the sums. Where pairs come and go the copy was a quarter of all memory.
+    // is put aside. Where pairs come and go the copy was a quarter of all memory.
     const int each = numbers_per_spring();
     const auto count = static_cast<std::int64_t>(tiles.size());
     tiles_before.resize(tiles.size());
@@ -132,12 +132,10 @@ void Engine::KernelOf<T>::keep_springs() {
         tile.first = first;
         first += std::popcount(tile.touched);
     }
-    const std::size_t room = sizeof(Record) / sizeof(S);
-    sums.resize(std::max(sums.size(), (static_cast<std::size_t>(first) * each + room - 1) / room));
-    S* const springs = reinterpret_cast<S*>(sums.data());
+    springs.resize(static_cast<std::size_t>(first) * each);
 #pragma omp parallel for schedule(static) num_threads(e.threads_)
     for (std::int64_t k = 0; k < count; ++k) {
-        S* to = springs + static_cast<std::size_t>(tiles_before[k].first) * each;
+        S* to = springs.data() + static_cast<std::size_t>(tiles_before[k].first) * each;
         for (int lane = 0; lane < W; ++lane) {
             if (!(tiles_before[k].touched >> lane & 1)) continue;
             for (int x = 0; x < 3; ++x) *to++ = tiles[k].xi[x][lane];
@@ -309,7 +307,6 @@ void Engine::KernelOf<T>::fill_tiles(const std::vector<float>& signed_reach) {
                 for (int k = 0; k < 3; ++k) rolls[slot / W].angle[k][lane] = 0;
         }
     };
-    const S* const springs = reinterpret_cast<const S*>(sums.data());
     const int each = numbers_per_spring();
     // Only who is the first to find it writes: the flags of many blocks share a line of the cache.
     const auto note_still = [&](std::size_t grain) {
@@ -354,7 +351,7 @@ void Engine::KernelOf<T>::fill_tiles(const std::vector<float>& signed_reach) {
                 const S turn = code >= 0 ? S(1) : S(-1);
                 const std::uint32_t ahead = before[old / W].touched & ((std::uint32_t{1} << old % W) - 1);
                 const S* const spring =
-                    springs +
+                    springs.data() +
                     (apart ? 0
                            : static_cast<std::size_t>(before[old / W].first + std::popcount(ahead)) * each);
                 for (int k = 0; k < 3; ++k) t.xi[k][lane] = apart ? S(0) : turn * spring[k];
@@ -426,13 +423,13 @@ BodyForce Engine::KernelOf<T>::force_on_fixed() const {
 }
 
 template <class T>
-std::array<double, 3> Engine::KernelOf<T>::force_on_fixed_of(const Block& block) const {
+std::array<double, 3> Engine::KernelOf<T>::force_on_fixed_of(const Block& block, const Sums& from) const {
     std::array<double, 3> sum{};
     if (!block.presses_still) return sum;
     const auto first = static_cast<std::int32_t>(&block - blocks.data());
     for (std::int32_t i = first_grain(first); i < first_grain(first + 1); ++i)
         if (e.state_.fixed[i])
-            for (int k = 0; k < 3; ++k) sum[k] += double(sums[i].value[k]);
+            for (int k = 0; k < 3; ++k) sum[k] += double(from[i].value[k]);
     return sum;
 }
 
@@ -517,7 +514,7 @@ template <class T>
 double Engine::KernelOf<T>::memory_bytes() const {
     auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
     return bytes(motion) + bytes(tiles) + bytes(tiles_before) + bytes(rolls) + bytes(walls) +
-           bytes(old_walls) + bytes(sums) + bytes(kept) + bytes(wall_first) + bytes(blocks);
+           bytes(old_walls) + bytes(sums) + bytes(springs) + bytes(kept) + bytes(wall_first) + bytes(blocks);
 }
 
 template struct Engine::KernelOf<double>;

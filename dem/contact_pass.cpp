@@ -16,16 +16,21 @@ namespace gradwright {
 
 // Inlined by order: GCC takes a function that only fetches for one without effect, and drops the call.
 template <class T>
-[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_tile(std::int32_t tile,
+[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_tile(std::int32_t tile, bool brief,
                                                                    bool second_half) const {
-    constexpr std::int32_t kTilesAhead = 8;  // 4 and 16: the same
     constexpr std::size_t kLine = 64, kHalf = sizeof(PairTile) / 2 / kLine * kLine;
-    const char* const pairs = reinterpret_cast<const char*>(tiles.data() + tile + kTilesAhead);
+    const char* const pairs = reinterpret_cast<const char*>(tiles.data() + tile);
+    if (brief) {
+        if (!second_half)
+            for (std::size_t byte = 0; byte < offsetof(PairTile, radius); byte += kLine)
+                __builtin_prefetch(pairs + byte, 0);
+        return;
+    }
     for (std::size_t byte = second_half ? kHalf : 0; byte < (second_half ? sizeof(PairTile) : kHalf);
          byte += kLine)
         __builtin_prefetch(pairs + byte, 1);
     if (!second_half || !has_rolls) return;
-    const char* const springs = reinterpret_cast<const char*>(rolls.data() + tile + kTilesAhead);
+    const char* const springs = reinterpret_cast<const char*>(rolls.data() + tile);
     for (std::size_t byte = 0; byte < sizeof(RollTile); byte += kLine) __builtin_prefetch(springs + byte, 1);
 }
 
@@ -35,7 +40,6 @@ template <class T>
          ahead.met += 2) {  // two grains a cache line
         __builtin_prefetch(&e.state_.place[ahead.met], 1);
         __builtin_prefetch(&motion[ahead.met], 1);
-        __builtin_prefetch(&sums[ahead.met], 1);
     }
     for (const std::int32_t end = std::min(ahead.own_end, ahead.own + ahead.own_each); ahead.own < end;
          ++ahead.own)
@@ -44,7 +48,7 @@ template <class T>
 
 template <class T>
 template <bool kAdhesive, RollingModel kRolling>
-void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept, Ahead* ahead) {
+void Engine::KernelOf<T>::pair_pass(const Block& block, const Sums& to, Handed* kept, Ahead* ahead) {
     const double period = e.options_.period_y, inv_period = period > 0 ? 1 / period : 0;
     const double period_x = e.options_.period_x, inv_period_x = period_x > 0 ? 1 / period_x : 0;
     const double period_z = e.options_.period_z, inv_period_z = period_z > 0 ? 1 / period_z : 0;
@@ -52,8 +56,12 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept, Ahead* ahe
     const LawFault fault = e.options_.fault;
     const Place* const place = e.state_.place.data();
     [[maybe_unused]] constexpr std::uint32_t kAllLanes = (std::uint32_t{1} << W) - 1;
+    constexpr std::int32_t kTilesAhead = 8;  // 4 and 16: the same
+    const std::int32_t live_end = block.first_tile + (block.own_touching + W - 1) / W;
     for (std::int32_t k = block.first_tile; k < block.end_tile; ++k) {
         PairTile& t = tiles[k];
+        [[maybe_unused]] const std::int32_t next = k + kTilesAhead;
+        [[maybe_unused]] const bool brief = next >= live_end && next < block.end_tile;
         Contact<T> c;
         T dx, dy, dz, distance;
         if constexpr (W == 1) {
@@ -86,7 +94,7 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept, Ahead* ahe
             // only where its 6e-8 is relative to the overlap
             using Half = typename Lane<T>::Half;
             Half d[2][4], square[2];
-            if (ahead) fetch_tile(k, false);
+            if (ahead) fetch_tile(next, brief, false);
             for (int half = 0; half < 2; ++half) {
                 for (int four = 0; four < W / 2; four += static_cast<int>(sizeof(Half) / sizeof(double)))
                     gather4(d[half], half * W / 2 + four, [&](int lane) {
@@ -103,7 +111,8 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept, Ahead* ahe
                 }
                 square[half] = d[half][0] * d[half][0] + d[half][1] * d[half][1] + d[half][2] * d[half][2];
             }
-            if (ahead) fetch_tile(k, true);
+            if (ahead) fetch_tile(next, brief, true);
+            if (ahead) fetch_grains(*ahead);
             const T numerator = join(d[0][3] * d[0][3] - square[0], d[1][3] * d[1][3] - square[1]);
             const T sum = join(d[0][3], d[1][3]);
             dx = join(d[0][0], d[1][0]);
@@ -119,7 +128,6 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept, Ahead* ahe
                 if (kept) kept[k - block.first_tile].idle = true;
                 continue;
             }
-            if (ahead) fetch_grains(*ahead);
             T mi[8], mj[8];
             gather8(mi, [&](int lane) { return *reinterpret_cast<const F8*>(&motion[t.i[lane]]); });
             gather8(mj, [&](int lane) { return *reinterpret_cast<const F8*>(&motion[t.j[lane]]); });
@@ -171,13 +179,13 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, Handed* kept, Ahead* ahe
             write_rows(first, reinterpret_cast<F8*>(handed.to_first));
             write_rows(second, reinterpret_cast<F8*>(handed.to_second));
         }
-        if (!kept) hand_over(t, handed, std::min<std::int32_t>(W, block.own_end - k * W));
+        if (!kept) hand_over(t, handed, std::min<std::int32_t>(W, block.own_end - k * W), to);
     }
 }
 
 template <class T>
 template <bool kAdhesive, RollingModel kRolling>
-void Engine::KernelOf<T>::wall_pass(const Block& block, double body_time) {
+void Engine::KernelOf<T>::wall_pass(const Block& block, const Sums& to, double body_time) {
     const LawConstants law = e.law_;
     const LawFault fault = e.options_.fault;
     for (std::int32_t k = block.first_wall; k < block.end_wall; ++k) {
@@ -254,15 +262,16 @@ void Engine::KernelOf<T>::wall_pass(const Block& block, double body_time) {
         store<T>(t.out[5], rough * out.tiz);
         const int lanes = std::min<std::int32_t>(W, block.wall_end - k * W);
         for (int lane = 0; lane < lanes; ++lane) {
-            S* const sum = sums[t.i[lane]].value;
+            S* const sum = to[t.i[lane]].value;
             for (int c = 0; c < 3; ++c) sum[c] += t.out[c][lane], sum[4 + c] += t.out[3 + c][lane];
         }
     }
 }
 
-#define GRADWRIGHT_PASSES(T, ADHESIVE, ROLLING)                                                     \
-    template void Engine::KernelOf<T>::pair_pass<ADHESIVE, ROLLING>(const Block&, Handed*, Ahead*); \
-    template void Engine::KernelOf<T>::wall_pass<ADHESIVE, ROLLING>(const Block&, double);
+#define GRADWRIGHT_PASSES(T, ADHESIVE, ROLLING)                                                         \
+    template void Engine::KernelOf<T>::pair_pass<ADHESIVE, ROLLING>(const Block&, const Sums&, Handed*, \
+                                                                    Ahead*);                            \
+    template void Engine::KernelOf<T>::wall_pass<ADHESIVE, ROLLING>(const Block&, const Sums&, double);
 #define GRADWRIGHT_ALL_PASSES(T)                               \
     GRADWRIGHT_PASSES(T, true, RollingModel::none)             \
     GRADWRIGHT_PASSES(T, false, RollingModel::none)            \

@@ -181,6 +181,10 @@ std::size_t Engine::contacts() const {
     return kernel_->contacts();
 }
 
+int Engine::steps_at_once() const {
+    return kernel_->steps_at_once();
+}
+
 std::size_t Engine::near_pairs() const {
     return kernel_->near_pairs();
 }

@@ -43,8 +43,9 @@ struct EngineOptions {
     double skin = 0;              ///< candidate skin of two typical grains [m], 0 = from the grain size
     double near_skin = 0;         ///< near-pair skin of two typical grains [m], 0 = from the grain size
     int threads = 0;              ///< 0 = OpenMP's default
-    /// More grains than this do not fit in the processor's cache: memory is asked ahead (time_step.cpp). No
-    /// number depends on it.
+    /// More grains than this do not fit in the processor's cache: memory is asked ahead, and when so many are
+    /// awake several steps are computed at once (time_step.cpp). The same bits, but for a list of pairs that
+    /// runs out within a few steps because grains become twice as fast in them.
     int cached_grains = 40000;
     double speed_limit = 20;       ///< faster grains mean the run has diverged [m/s]
     double remove_beyond_x = 1e9;  ///< grains past this x leave the run (overflow) [m]
@@ -125,8 +126,10 @@ class Engine {
     double max_overlap_ratio_seen() const { return max_overlap_seen_; }
     /// Share of mobile grains in a contact whose overlap exceeds `ratio` of the smaller radius now [-].
     double share_overlapping(double ratio);
-    double mean_coordination();      ///< contacts per mobile grain (floor and walls counted once)
-    std::size_t contacts() const;    ///< pair contacts alive
+    double mean_coordination();    ///< contacts per mobile grain (floor and walls counted once)
+    std::size_t contacts() const;  ///< pair contacts alive
+    /// Steps that the grains go through together, on all threads: more than 1 for a bed beyond the cache.
+    int steps_at_once() const;
     std::size_t near_pairs() const;  ///< pairs that the law sees in every step, touching or not
     /// Grain indices whose overlap with a body exceeds `ratio` of their radius now.
     std::vector<std::size_t> overlapping_body(int body, double ratio) const;

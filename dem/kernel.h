@@ -9,6 +9,8 @@
 // them. On several threads each has a run of blocks; pairs of blocks that reach over its end (the tail) are
 // computed by all threads first and kept: what they do beyond the end is the first that is added there, what
 // they do within it waits until the sweep comes by. The same order, the same bits on any number of threads.
+// A bed that does not fit in the processor's cache is swept by several steps at once, one close behind the
+// other (run_in_levels): it comes from memory once for all of them.
 // Rejected: records by which a pair hands its force over, summed grain by grain. A grain has from none to a
 // dozen, which the processor cannot foresee: sums and motion took 17 ns a grain-step, motion alone takes 4.
 #pragma once
@@ -36,6 +38,7 @@ struct Engine::Kernel {
     virtual void rebuild_near() = 0;  ///< near pairs and wall slots from the candidates; history carried over
     virtual void
     carry_history() = 0;  ///< after rebuild_candidates: map kept contacts onto the new candidates
+    virtual int steps_at_once() const = 0;
     virtual long run(long steps) = 0;  ///< steps done; ends early when the near list has run out
     virtual BodyForce force_on_body(int body) const = 0;
     virtual BodyForce force_on_fixed() const = 0;
@@ -64,8 +67,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// W near pairs. i < n_dummy real; padding lanes point at two far dummies.
     struct alignas(64) PairTile {
         std::int32_t i[W], j[W];
-        S radius[W], mass[W], e_star[W], g_star8[W], jkr_radius[W];
         S touching[W];
+        S radius[W], mass[W], e_star[W], g_star8[W], jkr_radius[W];
         S xi[3][W];
     };
     /// Rolling springs of W near pairs, beside their tile; none where the rolling model has no springs.
@@ -125,9 +128,17 @@ struct Engine::KernelOf final : Engine::Kernel {
     AlignedVector<PairTile> tiles;
     AlignedVector<RollTile> rolls;
     AlignedVector<WallTile> walls, old_walls;
-    /// By grain; zero between steps, but for grains that do not move. While the near list is made anew their
-    /// memory holds the springs of the contacts.
-    AlignedVector<Record> sums;
+    /// What the pairs of one share give its grains. Alive are only the sums of those from the block that is
+    /// swept to the furthest that its pairs have met: each stands where its number falls in a ring of
+    /// 2^k places, which stays in the cache. Zero between steps.
+    struct Sums {
+        Record* ring;
+        std::int32_t mask;  ///< 2^k - 1
+        Record& operator[](std::int32_t grain) const { return ring[grain & mask]; }
+    };
+    AlignedVector<Record> sums;  ///< the rings, one after the other
+    std::int32_t sums_mask = 0;
+    AlignedVector<S> springs;  ///< of what touches, while the near list is made anew
     /// Of a tile of the near list before: which of its pairs touched, and how many did in the tiles ahead of
     /// it.
     struct TileBefore {
@@ -150,11 +161,22 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Who sweeps what, for the pairs as they stand. Shares are cut so that all threads end together, by how
     /// fast each was: cores differ, and others use them too.
     void share_out();
+    /// Rings, one a share or one a level of each thread, all zero.
+    void make_sums();
+    /// Whether steps are swept several at once, and how many by each thread.
+    void choose_levels();
+    /// The last block that the pairs of block `b` reach into.
+    std::int32_t last_met(std::int32_t b) const {
+        return std::max(b, blocks[b].reach / static_cast<std::int32_t>(kBlock));
+    }
+    Sums sums_of(std::size_t ring) {
+        return {sums.data() + ring * (static_cast<std::size_t>(sums_mask) + 1), sums_mask};
+    }
     void learn_pace(const std::vector<Busy>& busy);
     Predicted predicted(std::size_t i) const override;
     void scale_motion(double factor) override;
     void rebuild_near() override;
-    /// Leaves `tiles_before` and, in `sums`, the springs of what touches: the tiles may be overwritten.
+    /// Leaves `tiles_before` and, in `springs`, those of what touches: the tiles may be overwritten.
     void keep_springs();
     /// `work(block)` for every block, if possible on the thread that sweeps it: its pairs stay in that core's
     /// cache. Blocks in which all sleep, and what is left in the end, go to whoever has time.
@@ -186,30 +208,54 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Grains of the next share that a tail's pairs meet: read by the tail, then written by their own thread.
     void fetch_met(std::int32_t first, std::int32_t last, bool reading) const;
     /// One half of a tile some way on: its pairs and constants, or what they remember.
-    void fetch_tile(std::int32_t tile, bool second_half) const;
+    void fetch_tile(std::int32_t tile, bool brief, bool second_half) const;
     /// The block's pairs; what they do is added to the sums, or with `kept` left there, a tile each.
     template <bool kAdhesive, RollingModel kRolling>
-    void pair_pass(const Block& block, Handed* kept, Ahead* ahead);
+    void pair_pass(const Block& block, const Sums& to, Handed* kept, Ahead* ahead);
     template <bool kAdhesive, RollingModel kRolling>
-    void wall_pass(const Block& block, double body_time);
+    void wall_pass(const Block& block, const Sums& to, double body_time);
+    /// Number and parts of one step of a run.
+    struct Step {
+        double kick;       ///< what velocities are advanced by [s]
+        double body_time;  ///< bodies stand where they stand then [s]
+        bool last;         ///< of the run: the forces on fixed grains are kept
+    };
+    /// All of a block that follows its pairs: walls, then motion. Returns as grain_pass does; `lap` is called
+    /// between the two.
+    template <bool kAdhesive, RollingModel kRolling, class Lap>
+    double finish_block(std::int32_t block, const Sums& sums, const Step& step, D4 frame, Lap&& lap);
+    /// Steps by shares, or several steps at once: the same bits.
     template <bool kAdhesive, RollingModel kRolling>
     long run_with(long steps);
+    template <bool kAdhesive, RollingModel kRolling>
+    long run_in_levels(long steps);
+    /// More grains move than fit in the cache.
+    bool beyond_cache() const { return static_cast<int>(e.awake_.size()) > e.options_.cached_grains; }
+    /// Steps to go before the near list is looked at again: one, or beyond the cache so many that it lasts
+    /// even if the grains become twice as fast meanwhile. `step_share`: what the last step used of it.
+    long steps_between_looks(double travel, double step_share) const;
+    /// Clocks and counters after `done` steps of a run with this frame.
+    void book_run(long done, double travel, double body_top, D4 frame, double seconds, double law_seconds,
+                  double grain_seconds);
+    int levels = 0;  ///< steps at once that each thread sweeps; 0: one after the other, by shares
+    int steps_at_once() const override { return levels > 0 ? levels * e.threads_ : 1; }
     /// The first `lanes` pairs of a tile to the sums of their grains.
-    void hand_over(const PairTile& tile, const Handed& handed, int lanes) {
+    static void hand_over(const PairTile& tile, const Handed& handed, int lanes, const Sums& to) {
         using Sum = typename Lane<T>::Sum;
         for (int lane = 0; lane < lanes; ++lane) {
-            *reinterpret_cast<Sum*>(&sums[tile.i[lane]]) +=
+            *reinterpret_cast<Sum*>(&to[tile.i[lane]]) +=
                 *reinterpret_cast<const Sum*>(&handed.to_first[lane]);
-            *reinterpret_cast<Sum*>(&sums[tile.j[lane]]) +=
+            *reinterpret_cast<Sum*>(&to[tile.j[lane]]) +=
                 *reinterpret_cast<const Sum*>(&handed.to_second[lane]);
         }
     }
     /// What the kept pairs of a block do to grains beyond `end`, or to those before it.
-    void hand_over_kept(const Block& block, const Handed* from, std::int32_t end, bool beyond);
+    void hand_over_kept(const Block& block, const Handed* from, const Sums& to, std::int32_t end,
+                        bool beyond);
     /// Motion and predicted motion of a block's awake grains from their sums, which become zero. Returns the
     /// largest (speed against `frame` / reach)^2 [1/s2]; infinite when it is no number.
-    double grain_pass(const Block& block, double kick, D4 frame);
-    std::array<double, 3> force_on_fixed_of(const Block& block) const;
+    double grain_pass(const Block& block, const Sums& from, double kick, D4 frame);
+    std::array<double, 3> force_on_fixed_of(const Block& block, const Sums& from) const;
     std::int32_t first_grain(std::int32_t block) const {
         return std::min(static_cast<std::int32_t>(e.state_.size()),
                         block * static_cast<std::int32_t>(kBlock));

@@ -4,8 +4,10 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "dem/kernel.h"
 
@@ -47,6 +49,15 @@ void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) c
     ahead.own = first_grain(b + 1);
     ahead.own_end = first_grain(b + 2);
     ahead.own_each = part(ahead.own_end - ahead.own);
+    // rows of four bytes, sixteen a line
+    if (b + 2 < static_cast<std::int32_t>(blocks.size())) {
+        __builtin_prefetch(&blocks[b + 2], 0);
+        __builtin_prefetch(&blocks[b + 3], 0);
+        for (std::int32_t k = 0; k < static_cast<std::int32_t>(kBlock); k += 16) {
+            __builtin_prefetch(e.inverse_reach2_.data() + ahead.own + k, 0);
+            __builtin_prefetch(e.awake_.data() + block.end_awake + k, 0);
+        }
+    }
 }
 
 // What the pairs of one share's tail do to the next share's grains goes from core to core and back in every
@@ -57,7 +68,6 @@ template <class T>
 [[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_met(std::int32_t first, std::int32_t last,
                                                                   bool reading) const {
     for (std::int32_t grain = first; grain <= last; grain += 2) {  // two a cache line, of the wide law
-        __builtin_prefetch(&sums[grain], 1);
         if (reading) {
             __builtin_prefetch(&e.state_.place[grain], 0);
             __builtin_prefetch(&motion[grain], 0);
@@ -69,14 +79,14 @@ template <class T>
 }
 
 template <class T>
-void Engine::KernelOf<T>::hand_over_kept(const Block& block, const Handed* from, std::int32_t end,
-                                         bool beyond) {
+void Engine::KernelOf<T>::hand_over_kept(const Block& block, const Handed* from, const Sums& to,
+                                         std::int32_t end, bool beyond) {
     using Sum = typename Lane<T>::Sum;
     if (block.reach < end) {
         for (std::int32_t k = block.first_tile; k < block.end_tile && !beyond; ++k)
             if (!from[k - block.first_tile].idle)
                 hand_over(tiles[k], from[k - block.first_tile],
-                          std::min<std::int32_t>(W, block.own_end - k * W));
+                          std::min<std::int32_t>(W, block.own_end - k * W), to);
         return;
     }
     for (std::int32_t slot = block.first_tile * W; slot < block.own_end; ++slot) {
@@ -85,16 +95,14 @@ void Engine::KernelOf<T>::hand_over_kept(const Block& block, const Handed* from,
         if (handed.idle) continue;
         const int lane = slot % W;
         if (!beyond)
-            *reinterpret_cast<Sum*>(&sums[t.i[lane]]) +=
-                *reinterpret_cast<const Sum*>(&handed.to_first[lane]);
+            *reinterpret_cast<Sum*>(&to[t.i[lane]]) += *reinterpret_cast<const Sum*>(&handed.to_first[lane]);
         if ((t.j[lane] >= end) == beyond)
-            *reinterpret_cast<Sum*>(&sums[t.j[lane]]) +=
-                *reinterpret_cast<const Sum*>(&handed.to_second[lane]);
+            *reinterpret_cast<Sum*>(&to[t.j[lane]]) += *reinterpret_cast<const Sum*>(&handed.to_second[lane]);
     }
 }
 
 template <class T>
-double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame) {
+double Engine::KernelOf<T>::grain_pass(const Block& block, const Sums& from, double kick, D4 frame) {
     const double dt = e.options_.time_step;
     const D4 gravity = {e.options_.gravity[0], e.options_.gravity[1], e.options_.gravity[2], 0};
     const double half = e.options_.fault.late_velocity ? 0 : 0.5 * dt;
@@ -104,8 +112,8 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame
     double top = 0, sum = 0;  // std::max drops what is not a number, a sum keeps it
     for (std::int32_t k = block.first_awake; k < block.end_awake; ++k) {
         const std::int32_t i = e.awake_[k];
-        const Sum f = *reinterpret_cast<const Sum*>(&sums[i]);
-        *reinterpret_cast<Sum*>(&sums[i]) = Sum{};
+        const Sum f = *reinterpret_cast<const Sum*>(&from[i]);
+        *reinterpret_cast<Sum*>(&from[i]) = Sum{};
         D4 force, torque;
         split(f, force, torque);
         D4 v = *reinterpret_cast<const D4*>(&moving[i].vx), w = *reinterpret_cast<const D4*>(&moving[i].wx);
@@ -134,8 +142,107 @@ double Engine::KernelOf<T>::grain_pass(const Block& block, double kick, D4 frame
 }
 
 template <class T>
+template <bool kAdhesive, RollingModel kRolling, class Lap>
+double Engine::KernelOf<T>::finish_block(std::int32_t b, const Sums& sums, const Step& step, D4 frame,
+                                         Lap&& lap) {
+    const Block& block = blocks[b];
+    wall_pass<kAdhesive, kRolling>(block, sums, step.body_time);
+    lap();
+    // `force_on_fixed` is asked for after the last step only
+    if (step.last) force_on_fixed_by_block[b] = force_on_fixed_of(block, sums);
+    const double top = grain_pass(block, sums, step.kick, frame);
+    if (block.presses_still)
+        for (std::int32_t i = first_grain(b); i < first_grain(b + 1); ++i) sums[i] = Record{};
+    return top;
+}
+
+// Several steps at once, for a bed that does not fit in the cache: one step sweeps the blocks, the next one
+// follows as soon as the grains that its block meets have moved, and so on, so that what one has fetched the
+// others find. Each thread sweeps some steps that follow each other; the first of them waits for the last one
+// of the thread ahead, block by block. Same sums in the same order as one step after the other.
+template <class T>
+template <bool kAdhesive, RollingModel kRolling>
+long Engine::KernelOf<T>::run_in_levels(long steps) {
+    const double dt = e.options_.time_step, body_time = e.body_time_;
+    const D4 frame = {e.frame_[0], e.frame_[1], e.frame_[2], 0};
+    const double body_top = e.body_speed();
+    const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
+    const bool first_kick = e.first_kick_;
+    const auto count = static_cast<std::int32_t>(blocks.size());
+    struct alignas(64) Level {
+        std::atomic<std::int32_t> done{0};  ///< blocks
+        double top = 0;
+    };
+    double travel = e.travel_, law_seconds = 0, grain_seconds = 0;
+    long done = 0, at_once = 1;
+    const double start = omp_get_wtime();
+    while (done < steps) {
+        at_once = std::min(at_once, steps - done);
+        std::vector<Level> level(static_cast<std::size_t>(at_once));
+        const int threads = static_cast<int>(std::min<long>(e.threads_, (at_once + levels - 1) / levels));
+#pragma omp parallel num_threads(threads)
+        {
+            const int me = omp_get_thread_num(), all = omp_get_num_threads();
+            for (long first = long{me} * levels; first < at_once; first += long{all} * levels) {
+                const long mine = std::min<long>(levels, at_once - first);
+                const std::atomic<std::int32_t>* const before = first > 0 ? &level[first - 1].done : nullptr;
+                std::int32_t seen = before ? 0 : count;  // of the step before the first of these
+                Ahead ahead;
+                // one block of each in turn, whichever may go on
+                while (level[first + mine - 1].done.load(std::memory_order_relaxed) < count) {
+                    bool idle = true;
+                    for (long k = 0; k < mine; ++k) {
+                        Level& now = level[first + k];
+                        const std::int32_t b = now.done.load(std::memory_order_relaxed);
+                        if (b == count) continue;
+                        const std::int32_t needed = last_met(b);
+                        if (k > 0 ? level[first + k - 1].done.load(std::memory_order_relaxed) <= needed
+                                  : seen <= needed &&
+                                        (seen = before->load(std::memory_order_acquire)) <= needed)
+                            continue;
+                        idle = false;
+                        const Step step{
+                            first_kick && done + first + k == 0 ? 0.5 * dt : dt,
+                            body_time + (e.bodies_move_ ? dt * static_cast<double>(done + first + k) : 0),
+                            done + first + k == steps - 1};
+                        const Sums to = sums_of(static_cast<std::size_t>(me) * levels + k);
+                        const bool clocked = me == 0 && b % 8 == 4;
+                        const double clock = clocked ? omp_get_wtime() : 0;
+                        double middle = clock;
+                        if (k == 0) aim(ahead, b, count);
+                        pair_pass<kAdhesive, kRolling>(blocks[b], to, nullptr, k == 0 ? &ahead : nullptr);
+                        now.top =
+                            std::max(now.top, finish_block<kAdhesive, kRolling>(b, to, step, frame, [&] {
+                                         if (clocked) middle = omp_get_wtime();
+                                     }));
+                        if (clocked) {
+                            law_seconds += middle - clock;
+                            grain_seconds += omp_get_wtime() - middle;
+                        }
+                        now.done.store(b + 1, std::memory_order_release);
+                    }
+                    if (idle) std::this_thread::yield();
+                }
+            }
+        }
+        double step_share = 0;
+        for (const Level& one : level) {
+            step_share = dt * std::max(std::sqrt(one.top), rest_rate);
+            travel += step_share;
+        }
+        done += at_once;
+        // `not (a <= b)`: a speed that is not a number ends the block too
+        if (!(travel <= 1)) break;
+        at_once = steps_between_looks(travel, step_share);
+    }
+    book_run(done, travel, body_top, frame, omp_get_wtime() - start, law_seconds, grain_seconds);
+    return done;
+}
+
+template <class T>
 template <bool kAdhesive, RollingModel kRolling>
 long Engine::KernelOf<T>::run_with(long steps) {
+    if (levels > 0) return run_in_levels<kAdhesive, kRolling>(steps);
     const double dt = e.options_.time_step;
     const D4 frame = {e.frame_[0], e.frame_[1], e.frame_[2], 0};
     const double body_top = e.body_speed();
@@ -155,19 +262,20 @@ long Engine::KernelOf<T>::run_with(long steps) {
     const bool first_kick = e.first_kick_;
     const bool tails = !kept.empty();
     const double start = omp_get_wtime();
-    const bool beyond_cache = static_cast<int>(e.state_.size()) > e.options_.cached_grains;
+    const bool ask_ahead = static_cast<int>(e.state_.size()) > e.options_.cached_grains;
 #pragma omp parallel num_threads(count)
     {
         double my_travel = e.travel_;
         Busy my_busy;
-        long my_done = 0;
+        long my_done = 0, look = 1;
         const int me = omp_get_thread_num(), all = omp_get_num_threads();
         const auto kept_of = [&](const Share& share, const Block& block) {
             return kept.data() + share.kept + (block.first_tile - blocks[share.tail].first_tile);
         };
         for (long step = 0; step < steps; ++step) {
-            const double bt = body_time + (e.bodies_move_ ? dt * step : 0);
-            const double kick = first_kick && step == 0 ? 0.5 * dt : dt;
+            const Step parts{first_kick && step == 0 ? 0.5 * dt : dt,
+                             body_time + (e.bodies_move_ ? dt * static_cast<double>(step) : 0),
+                             step == steps - 1};
             // what a stage costs is looked at in every eighth step, by the first thread; how long a share
             // takes by its own. Not in the first: there the new lists come from another core's cache.
             const bool watched = step % 8 == 4, clocked = me == 0 && watched;
@@ -191,8 +299,9 @@ long Engine::KernelOf<T>::run_with(long steps) {
                     fetch_met(first_grain(share.end), share.reach, true);
                     for (std::int32_t b = share.tail; b < share.end; ++b) {
                         Handed* const to = kept_of(share, blocks[b]);
-                        pair_pass<kAdhesive, kRolling>(blocks[b], to, nullptr);
-                        hand_over_kept(blocks[b], to, first_grain(share.end), true);
+                        pair_pass<kAdhesive, kRolling>(blocks[b], {}, to, nullptr);
+                        if (s + 1 < count)
+                            hand_over_kept(blocks[b], to, sums_of(s + 1), first_grain(share.end), true);
                     }
                 }
                 watch(&my_busy.tail);
@@ -202,6 +311,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
             }
             for (int s = me; s < count; s += all) {
                 const Share& share = shares[s];
+                const Sums mine = sums_of(s);
                 double top = 0;
                 if (s > 0) fetch_met(first_grain(share.first), shares[s - 1].reach, false);
                 Ahead ahead;
@@ -209,18 +319,13 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 for (std::int32_t b = share.first; b < share.end; ++b) {
                     const Block& block = blocks[b];
                     if (b < share.tail) {
-                        if (beyond_cache) aim(ahead, b, share.tail);
-                        pair_pass<kAdhesive, kRolling>(block, nullptr, beyond_cache ? &ahead : nullptr);
+                        if (ask_ahead) aim(ahead, b, share.tail);
+                        pair_pass<kAdhesive, kRolling>(block, mine, nullptr, ask_ahead ? &ahead : nullptr);
                     } else {
-                        hand_over_kept(block, kept_of(share, block), first_grain(share.end), false);
+                        hand_over_kept(block, kept_of(share, block), mine, first_grain(share.end), false);
                     }
-                    wall_pass<kAdhesive, kRolling>(block, bt);
-                    lap(law_seconds);
-                    // `force_on_fixed` is asked for after the last step only
-                    if (step == steps - 1) force_on_fixed_by_block[b] = force_on_fixed_of(block);
-                    top = std::max(top, grain_pass(block, kick, frame));
-                    if (block.presses_still)
-                        std::fill(sums.begin() + first_grain(b), sums.begin() + first_grain(b + 1), Record{});
+                    top = std::max(top, finish_block<kAdhesive, kRolling>(b, mine, parts, frame,
+                                                                          [&] { lap(law_seconds); }));
                     lap(grain_seconds);
                 }
                 tops[s].of[step % 2] = top;
@@ -232,10 +337,13 @@ long Engine::KernelOf<T>::run_with(long steps) {
             double top = 0;
             for (const Top& one : tops) top = std::max(top, one.of[step % 2]);
             top = std::sqrt(top);
-            my_travel += dt * std::max(top, rest_rate);
+            const double step_share = dt * std::max(top, rest_rate);
+            my_travel += step_share;
             my_done = step + 1;
+            if (my_done < look) continue;
             // `not (a <= b)`: a speed that is not a number ends the block too
             if (!(my_travel <= 1)) break;
+            look = my_done + steps_between_looks(my_travel, step_share);
         }
         if (count == all) busy[me] = my_busy;
         if (me == 0) {
@@ -244,6 +352,21 @@ long Engine::KernelOf<T>::run_with(long steps) {
         }
     }
     learn_pace(busy);
+    book_run(done, travel, body_top, frame, omp_get_wtime() - start, law_seconds, grain_seconds);
+    return done;
+}
+
+template <class T>
+long Engine::KernelOf<T>::steps_between_looks(double travel, double step_share) const {
+    constexpr double kAtMost = 16;
+    return beyond_cache() ? std::lround(std::clamp(std::floor(0.5 * (1 - travel) / step_share), 1.0, kAtMost))
+                          : 1;
+}
+
+template <class T>
+void Engine::KernelOf<T>::book_run(long done, double travel, double body_top, D4 frame, double seconds,
+                                   double law_seconds, double grain_seconds) {
+    const double dt = e.options_.time_step;
     e.first_kick_ = false;
     e.travel_ = std::isfinite(travel) ? travel : 1e9;
     e.steps_ += done;
@@ -253,10 +376,9 @@ long Engine::KernelOf<T>::run_with(long steps) {
     e.time_ += dt * done;
     if (e.bodies_move_) e.body_time_ += dt * done;
     e.grain_steps_ += static_cast<double>(done) * static_cast<double>(e.awake_.size());
-    const double seconds = omp_get_wtime() - start, looked = law_seconds + grain_seconds;
+    const double looked = law_seconds + grain_seconds;
     e.times_.law += looked > 0 ? seconds * law_seconds / looked : seconds;  // too few steps to look
     e.times_.grains += looked > 0 ? seconds * grain_seconds / looked : 0;
-    return done;
 }
 
 template <class T>

@@ -60,6 +60,7 @@ void Engine::KernelOf<T>::rebuild_walls() {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
         if (near[i] == 0) continue;
+        if (s.asleep[i]) blocks[i / kBlock].presses_still = 1;
         std::size_t slot = wall_first[i];
         for (int b = 0; b < body_count; ++b) {
             if (!(near[i] >> b & 1)) continue;
