@@ -4,8 +4,8 @@
 // One sweep a step. Grains stand in cell order, x slowest, and a pair belongs to its first, lower grain. So
 // once the pairs of a block of grains are computed, nothing that comes later in the order adds to its grains
 // or reads where they were, and they can be moved at once, while all of it is still in the cache: only the
-// width of the moving window, two layers of cells, has to fit there. A pair adds what it does to the sums of
-// both its grains, so that a grain's sum runs over its pairs in the order of their slots, whoever computed
+// width of the moving window, a layer of cells or two, has to fit there. A pair adds what it does to the sums
+// of both its grains, so that a grain's sum runs over its pairs in the order of their slots, whoever computed
 // them. On several threads each has a run of blocks; pairs of blocks that reach over its end (the tail) are
 // computed by all threads first and kept: what they do beyond the end is the first that is added there, what
 // they do within it waits until the sweep comes by. The same order, the same bits on any number of threads.

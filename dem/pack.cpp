@@ -137,7 +137,8 @@ struct Settling {
     /// as none falls asleep again: speed number < 0.01, floor and walls carry the weight within 1 %. The law
     /// has no twisting resistance, so a grain that hangs on one adhesive contact can twirl for ever, and
     /// swing the grains that hang on it: once hardly any grain moves, all motion is quartered from time to
-    /// time, not so often that a grain could not topple in between.
+    /// time, less and less often: without friction against rolling a grain may take long to topple, and one
+    /// that is held up again and again never does.
     bool settle(long most, const char* stage) {
         weigh();
         engine.wake_all();
@@ -145,7 +146,7 @@ struct Settling {
         const long burst = 250;
         // Long steps: none may fall asleep again while all must stand, for what sleeps presses on nothing.
         const bool drowsy = 3 * static_cast<double>(burst) * engine.time_step() > engine.sleep_time();
-        int bursts = 0;
+        int bursts = 0, quench = 20, pause = 20;  // in bursts
         while (engine.steps() - start < most && engine.failed().empty()) {
             if (options.stop && options.stop->load()) return false;
             engine.advance(burst);
@@ -153,7 +154,12 @@ struct Settling {
             if (options.progress)
                 options.progress({stage, 0.99 * (1 - std::exp(-3 * done / static_cast<double>(most)))});
             if (speed_number() > 0.01) {
-                if (++bursts % 20 == 0 && moving_share() < 0.01) engine.scale_velocities(0.25);
+                if (++bursts < quench) continue;
+                if (moving_share() < 0.01) {
+                    engine.scale_velocities(0.25);
+                    pause += pause / 4;
+                }
+                quench = bursts + pause;
                 continue;
             }
             engine.wake_all();

@@ -301,8 +301,9 @@ class Spreading {
             out_.health.warnings[k] = of_layer() + out_.health.warnings[k];
         if (was_ok && !out_.health.ok()) out_.health.reason = of_layer() + out_.health.reason;
         if (scene_.layers > 1 || scene_.substrate == Substrate::powder)
-            out_.passes.push_back(
-                {pass_.raised_solid_volume, carried_off_solid(scene_, stage_, pass_, places)});
+            out_.passes.push_back({pass_.raised_solid_volume,
+                                   carried_off_solid(scene_, stage_, pass_, places),
+                                   proud_solid(scene_, stage_, pass_, places)});
         if (out_.health.status == "starved" && out_.bond_number > kStickyBond)
             fail("does_not_flow",
                  fmt::format("the powder crossed the platform in lumps (Bond number {:.3g}; {}); lower "

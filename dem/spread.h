@@ -42,6 +42,9 @@ struct BedFacts {
 struct PassFacts {
     double raised_solid_volume = 0;       ///< above z = 0 ahead of the platform when the pass began [m3]
     double carried_off_solid_volume = 0;  ///< of substrate and earlier layers, taken over the end [m3]
+    /// Of grains over the platform whose centre stands above the blade's edge: not laid, but the next pass
+    /// over a fused substrate begins without them [m3].
+    double proud_solid_volume = 0;
 };
 
 struct SpreadResult {

@@ -113,7 +113,8 @@ const auto members = [](auto& io, auto& r) {
     if (!io.more(r.passes)) return;
     io.count(r.passes);
     for (auto& pass : r.passes)
-        for (auto* v : {&pass.raised_solid_volume, &pass.carried_off_solid_volume}) io.one(*v);
+        for (auto* v : {&pass.raised_solid_volume, &pass.carried_off_solid_volume, &pass.proud_solid_volume})
+            io.one(*v);
     io.count(r.earlier);
     for (auto& layer : r.earlier) layer_members(io, layer);
 };

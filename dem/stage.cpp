@@ -176,6 +176,16 @@ double carried_off_solid(const Scene& scene, const Stage& stage, const Pass& pas
     return solid;
 }
 
+double proud_solid(const Scene& scene, const Stage& stage, const Pass& pass,
+                   std::span<const GrainPlace> places) {
+    double solid = 0;
+    for (const GrainPlace& place : places)
+        if (pass.stand[place.bed_index] == Stand::ahead && place.x >= platform_start(scene) &&
+            place.x < platform_end(scene) && place.z >= 0)
+            solid += sphere_volume(stage.radius(place.bed_index));
+    return solid;
+}
+
 Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const GrainPlace> places,
                     RunHealth& health) {
     return measure_layer(scene, stage, first_pass(scene, stage), places, health);

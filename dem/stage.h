@@ -90,6 +90,10 @@ Layer measure_layer(const Scene& scene, const Stage& stage, std::span<const Grai
 double carried_off_solid(const Scene& scene, const Stage& stage, const Pass& pass,
                          std::span<const GrainPlace> places);
 
+/// Solid of this pass over the platform that stands above the blade's edge [m3].
+double proud_solid(const Scene& scene, const Stage& stage, const Pass& pass,
+                   std::span<const GrainPlace> places);
+
 /// Spreads a stage, all its passes: from the levelled bed to the last layer. Grains past the second land's
 /// end leave the run.
 SpreadResult spread_stage(const Scene& scene, const Stage& stage, const SpreadOptions& options);
