@@ -359,8 +359,8 @@ long Engine::KernelOf<T>::run_with(long steps) {
 template <class T>
 long Engine::KernelOf<T>::steps_between_looks(double travel, double step_share) const {
     constexpr double kAtMost = 16;
-    return beyond_cache() ? std::lround(std::clamp(std::floor(0.5 * (1 - travel) / step_share), 1.0, kAtMost))
-                          : 1;
+    const double lasts = 0.5 * (1 - travel) / step_share;  // not a number when both are zero: look at once
+    return !beyond_cache() || !(lasts >= 1) ? 1 : static_cast<long>(std::min(lasts, kAtMost));
 }
 
 template <class T>

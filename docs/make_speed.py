@@ -4,7 +4,7 @@
     python3 docs/make_speed.py [tradeoff] [reduced] [threads] [heap] [sizes] [lammps]
 
 Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` and
-`reduced` together take a quarter of an hour on two free cores, `threads` and `heap` a minute each once their beds are cached, `sizes` some minutes. Nothing else may run meanwhile.
+`reduced` together take a quarter of an hour on two free cores, `threads`, `heap` and `sizes` a minute or two each once their beds are cached. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
 import json
@@ -55,32 +55,27 @@ def tradeoff_table(name, words):
     return "\n".join(rows)
 
 
-def bench_table(name, words, by):
-    a = answer(name, words)
-    rows = [f"`{shown(words)}` on {a['host']['cores']} cores, {a['host']['isa']}:\n",
-            "| state | grains | threads | million grain-steps/s | a thread | bytes a grain | contacts a grain |" + (" core to core and back, ns |" if by == "threads" else ""),
-            "|---|---|---|---|---|---|---|" + ("---|" if by == "threads" else "")]
+def sizes_table():
+    a = answer("sizes", SIZES)
+    rows = [f"`{shown(SIZES)}` on {a['host']['cores']} cores, {a['host']['isa']}:\n",
+            "| state | grains | steps at once | million grain-steps/s | bytes a grain | contacts a grain |", "|---|---|---|---|---|---|"]
     for c in a["cases"]:
-        trip = "" if by != "threads" else " |" if c["core_round_trip_ns"] is None else f" {c['core_round_trip_ns']:.0f} |"
-        rows.append(f"| {c['name']} | {c['grains']} | {c['threads']} | {c['grain_steps_per_second'] / 1e6:.1f} | {c['grain_steps_per_second'] / 1e6 / c['threads']:.1f} | {c['bytes_per_grain']:.0f} | {c['contacts_per_grain']:.2f} |{trip}")
-    if by == "threads":
-        for state in dict.fromkeys(c["name"] for c in a["cases"]):
-            of = {c["threads"]: c["grain_steps_per_second"] for c in a["cases"] if c["name"] == state}
-            rows.append(f"\n{state.capitalize()}: {max(of)} threads against one: {of[max(of)] / of[1]:.2f} times." if len(of) > 1 else "")
-    else:
-        speeds = [c["grain_steps_per_second"] for c in a["cases"]]
-        rows.append(f"\nCost of a grain-step, dearest size over cheapest: {max(speeds) / min(speeds):.2f}.")
+        rows.append(f"| {c['name']} | {c['grains']} | {c['steps_at_once']} | {c['grain_steps_per_second'] / 1e6:.1f} | {c['bytes_per_grain']:.0f} | {c['contacts_per_grain']:.2f} |")
+    speeds = [c["grain_steps_per_second"] for c in a["cases"]]
+    rows.append(f"\nCost of a grain-step, dearest size over cheapest: {max(speeds) / min(speeds):.2f}.")
     return "\n".join(rows)
 
 
-def heap_table():
+def two_threads_table(name, words):
     """The same command at four times: the cores of a virtual machine are not always the same distance apart."""
-    rows = [f"`{shown(HEAP)}`, four times, some minutes apart:\n",
-            "| awake grains | one thread, million grain-steps/s | two threads | ratio | core to core and back, ns |", "|---|---|---|---|---|"]
-    for k in range(1, 5):
-        one, two = answer(f"heap-{k}", HEAP)["cases"]
-        speed = [c["grain_steps_per_second"] / 1e6 for c in (one, two)]
-        rows.append(f"| {one['grains'] * one['awake_share']:.0f} of {one['grains']} | {speed[0]:.1f} | {speed[1]:.1f} | {speed[1] / speed[0]:.2f} | {two['core_round_trip_ns']:.0f} |")
+    answers = [answer(f"{name}-{k}", words) for k in range(1, 5)]
+    rows = [f"`{shown(words)}` on {answers[0]['host']['cores']} cores, {answers[0]['host']['isa']}, four times, some minutes apart:\n",
+            "| state | awake grains | bytes a grain | one thread, million grain-steps/s | two threads | ratio | core to core and back, ns |", "|---|---|---|---|---|---|---|"]
+    for a in answers:
+        for state in dict.fromkeys(c["name"] for c in a["cases"]):
+            one, two = (c for c in a["cases"] if c["name"] == state)
+            speed = [c["grain_steps_per_second"] / 1e6 for c in (one, two)]
+            rows.append(f"| {state} | {one['grains'] * one['awake_share']:.0f} of {one['grains']} | {one['bytes_per_grain']:.0f}, {two['bytes_per_grain']:.0f} | {speed[0]:.1f} | {speed[1]:.1f} | {speed[1] / speed[0]:.2f} | {two['core_round_trip_ns']:.0f} |")
     return "\n".join(rows)
 
 
@@ -107,7 +102,7 @@ def keep_levels():
         file.write("\n")
 
 
-TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: bench_table("threads", THREADS, "threads"), "heap": heap_table, "sizes": lambda: bench_table("sizes", SIZES, "sizes")}
+TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: two_threads_table("threads", THREADS), "heap": lambda: two_threads_table("heap", HEAP), "sizes": sizes_table}
 measured.fill(PAGE, TABLES)
 if {"tradeoff", "reduced"} & set(sys.argv[1:] or TABLES):
     keep_levels()
