@@ -67,9 +67,9 @@ def sizes_table():
 
 
 def two_threads_table(name, words):
-    """The same command at four times: the cores of a virtual machine are not always the same distance apart."""
+    """The same command four times: the cores of a virtual machine are not always the same distance apart."""
     answers = [answer(f"{name}-{k}", words) for k in range(1, 5)]
-    rows = [f"`{shown(words)}` on {answers[0]['host']['cores']} cores, {answers[0]['host']['isa']}, four times, some minutes apart:\n",
+    rows = [f"`{shown(words)}` on {answers[0]['host']['cores']} cores, {answers[0]['host']['isa']}, four times:\n",
             "| state | awake grains | bytes a grain | one thread, million grain-steps/s | two threads | ratio | core to core and back, ns |", "|---|---|---|---|---|---|---|"]
     for a in answers:
         for state in dict.fromkeys(c["name"] for c in a["cases"]):
