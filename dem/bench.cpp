@@ -128,8 +128,7 @@ BenchCase of_bed(const Scene& tile, const Bed& one, int copies, bool flowing, in
     add_side_walls(engine, scene);
     engine.advance(200);
     // The first list of pairs knows of no contact yet and mixes pairs that touch with those that do not;
-    // every later one puts them apart, and is a fifth faster. A bed at rest would keep the first one all the
-    // time.
+    // every later one puts them apart. A bed at rest would keep the slow first one all the time.
     engine.refresh();
     engine.advance(1);
     if (flowing) {

@@ -16,21 +16,16 @@ namespace gradwright {
 
 // Inlined by order: GCC takes a function that only fetches for one without effect, and drops the call.
 template <class T>
-[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_tile(std::int32_t tile, bool brief,
+[[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_tile(std::int32_t tile,
                                                                    bool second_half) const {
+    constexpr std::int32_t kTilesAhead = 8;  // 4 and 16: the same
     constexpr std::size_t kLine = 64, kHalf = sizeof(PairTile) / 2 / kLine * kLine;
-    const char* const pairs = reinterpret_cast<const char*>(tiles.data() + tile);
-    if (brief) {
-        if (!second_half)
-            for (std::size_t byte = 0; byte < offsetof(PairTile, radius); byte += kLine)
-                __builtin_prefetch(pairs + byte, 0);
-        return;
-    }
+    const char* const pairs = reinterpret_cast<const char*>(tiles.data() + tile + kTilesAhead);
     for (std::size_t byte = second_half ? kHalf : 0; byte < (second_half ? sizeof(PairTile) : kHalf);
          byte += kLine)
         __builtin_prefetch(pairs + byte, 1);
     if (!second_half || !has_rolls) return;
-    const char* const springs = reinterpret_cast<const char*>(rolls.data() + tile);
+    const char* const springs = reinterpret_cast<const char*>(rolls.data() + tile + kTilesAhead);
     for (std::size_t byte = 0; byte < sizeof(RollTile); byte += kLine) __builtin_prefetch(springs + byte, 1);
 }
 
@@ -56,12 +51,8 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, const Sums& to, Handed* 
     const LawFault fault = e.options_.fault;
     const Place* const place = e.state_.place.data();
     [[maybe_unused]] constexpr std::uint32_t kAllLanes = (std::uint32_t{1} << W) - 1;
-    constexpr std::int32_t kTilesAhead = 8;  // 4 and 16: the same
-    const std::int32_t live_end = block.first_tile + (block.own_touching + W - 1) / W;
     for (std::int32_t k = block.first_tile; k < block.end_tile; ++k) {
         PairTile& t = tiles[k];
-        [[maybe_unused]] const std::int32_t next = k + kTilesAhead;
-        [[maybe_unused]] const bool brief = next >= live_end && next < block.end_tile;
         Contact<T> c;
         T dx, dy, dz, distance;
         if constexpr (W == 1) {
@@ -94,7 +85,7 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, const Sums& to, Handed* 
             // only where its 6e-8 is relative to the overlap
             using Half = typename Lane<T>::Half;
             Half d[2][4], square[2];
-            if (ahead) fetch_tile(next, brief, false);
+            if (ahead) fetch_tile(k, false);
             for (int half = 0; half < 2; ++half) {
                 for (int four = 0; four < W / 2; four += static_cast<int>(sizeof(Half) / sizeof(double)))
                     gather4(d[half], half * W / 2 + four, [&](int lane) {
@@ -111,7 +102,7 @@ void Engine::KernelOf<T>::pair_pass(const Block& block, const Sums& to, Handed* 
                 }
                 square[half] = d[half][0] * d[half][0] + d[half][1] * d[half][1] + d[half][2] * d[half][2];
             }
-            if (ahead) fetch_tile(next, brief, true);
+            if (ahead) fetch_tile(k, true);
             if (ahead) fetch_grains(*ahead);
             const T numerator = join(d[0][3] * d[0][3] - square[0], d[1][3] * d[1][3] - square[1]);
             const T sum = join(d[0][3], d[1][3]);

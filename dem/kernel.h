@@ -14,8 +14,11 @@
 // Rejected: records by which a pair hands its force over, summed grain by grain. A grain has from none to a
 // dozen, which the processor cannot foresee: sums and motion took 17 ns a grain-step, motion alone takes 4.
 #pragma once
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "dem/engine.h"
@@ -67,8 +70,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// W near pairs. i < n_dummy real; padding lanes point at two far dummies.
     struct alignas(64) PairTile {
         std::int32_t i[W], j[W];
-        S touching[W];
         S radius[W], mass[W], e_star[W], g_star8[W], jkr_radius[W];
+        S touching[W];
         S xi[3][W];
     };
     /// Rolling springs of W near pairs, beside their tile; none where the rolling model has no springs.
@@ -102,7 +105,7 @@ struct Engine::KernelOf final : Engine::Kernel {
         std::int32_t own_parked = 0;             ///< its first parked pair, of all of them
         std::int32_t first_awake = 0, end_awake = 0;  ///< into Engine::awake_
         std::int32_t reach = -1;                      ///< highest second grain of its pairs
-        std::uint8_t presses_still = 0;  ///< 1: some pair acts on a grain of it that does not move
+        std::uint8_t presses_still = 0;  ///< 1: some pair or wall acts on a grain of it that does not move
     };
     /// What one thread sweeps: blocks [first, end), of which [tail, end) are those whose pairs are computed
     /// before the sweep and kept from `kept` on.
@@ -208,17 +211,35 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Grains of the next share that a tail's pairs meet: read by the tail, then written by their own thread.
     void fetch_met(std::int32_t first, std::int32_t last, bool reading) const;
     /// One half of a tile some way on: its pairs and constants, or what they remember.
-    void fetch_tile(std::int32_t tile, bool brief, bool second_half) const;
+    void fetch_tile(std::int32_t tile, bool second_half) const;
     /// The block's pairs; what they do is added to the sums, or with `kept` left there, a tile each.
     template <bool kAdhesive, RollingModel kRolling>
     void pair_pass(const Block& block, const Sums& to, Handed* kept, Ahead* ahead);
     template <bool kAdhesive, RollingModel kRolling>
     void wall_pass(const Block& block, const Sums& to, double body_time);
-    /// Number and parts of one step of a run.
+    /// What one step of a run needs to know of itself.
     struct Step {
         double kick;       ///< what velocities are advanced by [s]
         double body_time;  ///< bodies stand where they stand then [s]
         bool last;         ///< of the run: the forces on fixed grains are kept
+    };
+    /// What all steps of a run have in common.
+    struct Run {
+        const Engine& e;
+        const long steps;
+        const double start = omp_get_wtime(), dt = e.options_.time_step, body_time = e.body_time_;
+        const bool first_kick = e.first_kick_;
+        const D4 frame = {e.frame_[0], e.frame_[1], e.frame_[2], 0};
+        const double body_top = e.body_speed();
+        /// Of what does not move by itself: share of its reach used up in a second [1/s].
+        const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
+        double law_seconds = 0, grain_seconds = 0;  ///< in the steps or blocks that were looked at
+        Step step(long number) const {
+            return {first_kick && number == 0 ? 0.5 * dt : dt,
+                    body_time + (e.bodies_move_ ? dt * static_cast<double>(number) : 0), number == steps - 1};
+        }
+        /// Of its reach, what the grain that uses up most of it does in a step; `top` as of grain_pass.
+        double share(double top) const { return dt * std::max(std::sqrt(top), rest_rate); }
     };
     /// All of a block that follows its pairs: walls, then motion. Returns as grain_pass does; `lap` is called
     /// between the two.
@@ -234,9 +255,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Steps to go before the near list is looked at again: one, or beyond the cache so many that it lasts
     /// even if the grains become twice as fast meanwhile. `step_share`: what the last step used of it.
     long steps_between_looks(double travel, double step_share) const;
-    /// Clocks and counters after `done` steps of a run with this frame.
-    void book_run(long done, double travel, double body_top, D4 frame, double seconds, double law_seconds,
-                  double grain_seconds);
+    /// Clocks and counters after `done` steps of a run.
+    void book_run(const Run& run, long done, double travel);
     int levels = 0;  ///< steps at once that each thread sweeps; 0: one after the other, by shares
     int steps_at_once() const override { return levels > 0 ? levels * e.threads_ : 1; }
     /// The first `lanes` pairs of a tile to the sums of their grains.

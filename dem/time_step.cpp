@@ -49,15 +49,12 @@ void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) c
     ahead.own = first_grain(b + 1);
     ahead.own_end = first_grain(b + 2);
     ahead.own_each = part(ahead.own_end - ahead.own);
-    // rows of four bytes, sixteen a line
-    if (b + 2 < static_cast<std::int32_t>(blocks.size())) {
-        __builtin_prefetch(&blocks[b + 2], 0);
-        __builtin_prefetch(&blocks[b + 3], 0);
+    // two rows of four bytes a grain, read in order: a line holds sixteen
+    if (b + 2 < static_cast<std::int32_t>(blocks.size()))
         for (std::int32_t k = 0; k < static_cast<std::int32_t>(kBlock); k += 16) {
             __builtin_prefetch(e.inverse_reach2_.data() + ahead.own + k, 0);
             __builtin_prefetch(e.awake_.data() + block.end_awake + k, 0);
         }
-    }
 }
 
 // What the pairs of one share's tail do to the next share's grains goes from core to core and back in every
@@ -163,63 +160,52 @@ double Engine::KernelOf<T>::finish_block(std::int32_t b, const Sums& sums, const
 template <class T>
 template <bool kAdhesive, RollingModel kRolling>
 long Engine::KernelOf<T>::run_in_levels(long steps) {
-    const double dt = e.options_.time_step, body_time = e.body_time_;
-    const D4 frame = {e.frame_[0], e.frame_[1], e.frame_[2], 0};
-    const double body_top = e.body_speed();
-    const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
-    const bool first_kick = e.first_kick_;
+    Run run{e, steps};
     const auto count = static_cast<std::int32_t>(blocks.size());
     struct alignas(64) Level {
         std::atomic<std::int32_t> done{0};  ///< blocks
         double top = 0;
     };
-    double travel = e.travel_, law_seconds = 0, grain_seconds = 0;
+    double travel = e.travel_;
     long done = 0, at_once = 1;
-    const double start = omp_get_wtime();
     while (done < steps) {
         at_once = std::min(at_once, steps - done);
         std::vector<Level> level(static_cast<std::size_t>(at_once));
+        const auto sweep = [&](Level& of, std::int32_t b, const Step& step, const Sums& sums, Ahead* ahead,
+                               bool clocked) {
+            const double begun = clocked ? omp_get_wtime() : 0;
+            double middle = 0;
+            if (ahead) aim(*ahead, b, count);
+            pair_pass<kAdhesive, kRolling>(blocks[b], sums, nullptr, ahead);
+            const double top = finish_block<kAdhesive, kRolling>(b, sums, step, run.frame, [&] {
+                if (clocked) middle = omp_get_wtime();
+            });
+            of.top = std::max(of.top, top);
+            if (clocked) {
+                run.law_seconds += middle - begun;
+                run.grain_seconds += omp_get_wtime() - middle;
+            }
+            of.done.store(b + 1, std::memory_order_release);
+        };
         const int threads = static_cast<int>(std::min<long>(e.threads_, (at_once + levels - 1) / levels));
 #pragma omp parallel num_threads(threads)
         {
             const int me = omp_get_thread_num(), all = omp_get_num_threads();
             for (long first = long{me} * levels; first < at_once; first += long{all} * levels) {
-                const long mine = std::min<long>(levels, at_once - first);
-                const std::atomic<std::int32_t>* const before = first > 0 ? &level[first - 1].done : nullptr;
-                std::int32_t seen = before ? 0 : count;  // of the step before the first of these
+                const long last = std::min<long>(first + levels, at_once) - 1;
                 Ahead ahead;
                 // one block of each in turn, whichever may go on
-                while (level[first + mine - 1].done.load(std::memory_order_relaxed) < count) {
+                while (level[last].done.load(std::memory_order_relaxed) < count) {
                     bool idle = true;
-                    for (long k = 0; k < mine; ++k) {
-                        Level& now = level[first + k];
-                        const std::int32_t b = now.done.load(std::memory_order_relaxed);
-                        if (b == count) continue;
-                        const std::int32_t needed = last_met(b);
-                        if (k > 0 ? level[first + k - 1].done.load(std::memory_order_relaxed) <= needed
-                                  : seen <= needed &&
-                                        (seen = before->load(std::memory_order_acquire)) <= needed)
+                    for (long l = first; l <= last; ++l) {
+                        const std::int32_t b = level[l].done.load(std::memory_order_relaxed);
+                        if (b == count ||
+                            (l > 0 && level[l - 1].done.load(std::memory_order_acquire) <= last_met(b)))
                             continue;
                         idle = false;
-                        const Step step{
-                            first_kick && done + first + k == 0 ? 0.5 * dt : dt,
-                            body_time + (e.bodies_move_ ? dt * static_cast<double>(done + first + k) : 0),
-                            done + first + k == steps - 1};
-                        const Sums to = sums_of(static_cast<std::size_t>(me) * levels + k);
-                        const bool clocked = me == 0 && b % 8 == 4;
-                        const double clock = clocked ? omp_get_wtime() : 0;
-                        double middle = clock;
-                        if (k == 0) aim(ahead, b, count);
-                        pair_pass<kAdhesive, kRolling>(blocks[b], to, nullptr, k == 0 ? &ahead : nullptr);
-                        now.top =
-                            std::max(now.top, finish_block<kAdhesive, kRolling>(b, to, step, frame, [&] {
-                                         if (clocked) middle = omp_get_wtime();
-                                     }));
-                        if (clocked) {
-                            law_seconds += middle - clock;
-                            grain_seconds += omp_get_wtime() - middle;
-                        }
-                        now.done.store(b + 1, std::memory_order_release);
+                        sweep(level[l], b, run.step(done + l),
+                              sums_of(static_cast<std::size_t>(me) * levels + (l - first)),
+                              l == first ? &ahead : nullptr, me == 0 && b % 8 == 4);
                     }
                     if (idle) std::this_thread::yield();
                 }
@@ -227,7 +213,7 @@ long Engine::KernelOf<T>::run_in_levels(long steps) {
         }
         double step_share = 0;
         for (const Level& one : level) {
-            step_share = dt * std::max(std::sqrt(one.top), rest_rate);
+            step_share = run.share(one.top);
             travel += step_share;
         }
         done += at_once;
@@ -235,7 +221,7 @@ long Engine::KernelOf<T>::run_in_levels(long steps) {
         if (!(travel <= 1)) break;
         at_once = steps_between_looks(travel, step_share);
     }
-    book_run(done, travel, body_top, frame, omp_get_wtime() - start, law_seconds, grain_seconds);
+    book_run(run, done, travel);
     return done;
 }
 
@@ -243,10 +229,7 @@ template <class T>
 template <bool kAdhesive, RollingModel kRolling>
 long Engine::KernelOf<T>::run_with(long steps) {
     if (levels > 0) return run_in_levels<kAdhesive, kRolling>(steps);
-    const double dt = e.options_.time_step;
-    const D4 frame = {e.frame_[0], e.frame_[1], e.frame_[2], 0};
-    const double body_top = e.body_speed();
-    const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
+    Run run{e, steps};
     const auto count = static_cast<int>(shares.size());
     // Two sets, by turns: between two steps without tails stands one barrier, and a thread that is past it
     // may write its next one while another still reads.
@@ -256,12 +239,8 @@ long Engine::KernelOf<T>::run_with(long steps) {
     std::vector<Top> tops(static_cast<std::size_t>(count));
     std::vector<Busy> busy(static_cast<std::size_t>(count));
     long done = 0;
-    double travel = e.travel_, law_seconds = 0,
-           grain_seconds = 0;  // written by thread 0 alone; every thread keeps the same numbers
-    const double body_time = e.body_time_;
-    const bool first_kick = e.first_kick_;
+    double travel = e.travel_;  // written by thread 0 alone; every thread keeps the same numbers
     const bool tails = !kept.empty();
-    const double start = omp_get_wtime();
     const bool ask_ahead = static_cast<int>(e.state_.size()) > e.options_.cached_grains;
 #pragma omp parallel num_threads(count)
     {
@@ -273,9 +252,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
             return kept.data() + share.kept + (block.first_tile - blocks[share.tail].first_tile);
         };
         for (long step = 0; step < steps; ++step) {
-            const Step parts{first_kick && step == 0 ? 0.5 * dt : dt,
-                             body_time + (e.bodies_move_ ? dt * static_cast<double>(step) : 0),
-                             step == steps - 1};
+            const Step parts = run.step(step);
             // what a stage costs is looked at in every eighth step, by the first thread; how long a share
             // takes by its own. Not in the first: there the new lists come from another core's cache.
             const bool watched = step % 8 == 4, clocked = me == 0 && watched;
@@ -306,7 +283,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 }
                 watch(&my_busy.tail);
 #pragma omp barrier
-                lap(law_seconds);
+                lap(run.law_seconds);
                 watch(nullptr);
             }
             for (int s = me; s < count; s += all) {
@@ -324,9 +301,9 @@ long Engine::KernelOf<T>::run_with(long steps) {
                     } else {
                         hand_over_kept(block, kept_of(share, block), mine, first_grain(share.end), false);
                     }
-                    top = std::max(top, finish_block<kAdhesive, kRolling>(b, mine, parts, frame,
-                                                                          [&] { lap(law_seconds); }));
-                    lap(grain_seconds);
+                    top = std::max(top, finish_block<kAdhesive, kRolling>(b, mine, parts, run.frame,
+                                                                          [&] { lap(run.law_seconds); }));
+                    lap(run.grain_seconds);
                 }
                 tops[s].of[step % 2] = top;
             }
@@ -336,8 +313,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
             }
             double top = 0;
             for (const Top& one : tops) top = std::max(top, one.of[step % 2]);
-            top = std::sqrt(top);
-            const double step_share = dt * std::max(top, rest_rate);
+            const double step_share = run.share(top);
             my_travel += step_share;
             my_done = step + 1;
             if (my_done < look) continue;
@@ -352,33 +328,32 @@ long Engine::KernelOf<T>::run_with(long steps) {
         }
     }
     learn_pace(busy);
-    book_run(done, travel, body_top, frame, omp_get_wtime() - start, law_seconds, grain_seconds);
+    book_run(run, done, travel);
     return done;
 }
 
 template <class T>
 long Engine::KernelOf<T>::steps_between_looks(double travel, double step_share) const {
-    constexpr double kAtMost = 16;
+    constexpr double kAtMost = 16;  // four times four: the fewer, the more often threads wait for the last
     const double lasts = 0.5 * (1 - travel) / step_share;  // not a number when both are zero: look at once
     return !beyond_cache() || !(lasts >= 1) ? 1 : static_cast<long>(std::min(lasts, kAtMost));
 }
 
 template <class T>
-void Engine::KernelOf<T>::book_run(long done, double travel, double body_top, D4 frame, double seconds,
-                                   double law_seconds, double grain_seconds) {
-    const double dt = e.options_.time_step;
+void Engine::KernelOf<T>::book_run(const Run& run, long done, double travel) {
+    const double dt = run.dt, seconds = omp_get_wtime() - run.start;
     e.first_kick_ = false;
     e.travel_ = std::isfinite(travel) ? travel : 1e9;
     e.steps_ += done;
     e.steps_since_near_ += done;
-    for (int k = 0; k < 3; ++k) e.frame_shift_[k] += frame[k] * dt * done;
-    e.body_way_ += body_top * dt * done;
+    for (int k = 0; k < 3; ++k) e.frame_shift_[k] += run.frame[k] * dt * done;
+    e.body_way_ += run.body_top * dt * done;
     e.time_ += dt * done;
     if (e.bodies_move_) e.body_time_ += dt * done;
     e.grain_steps_ += static_cast<double>(done) * static_cast<double>(e.awake_.size());
-    const double looked = law_seconds + grain_seconds;
-    e.times_.law += looked > 0 ? seconds * law_seconds / looked : seconds;  // too few steps to look
-    e.times_.grains += looked > 0 ? seconds * grain_seconds / looked : 0;
+    const double looked = run.law_seconds + run.grain_seconds;
+    e.times_.law += looked > 0 ? seconds * run.law_seconds / looked : seconds;  // too few steps to look
+    e.times_.grains += looked > 0 ? seconds * run.grain_seconds / looked : 0;
 }
 
 template <class T>
