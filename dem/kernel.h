@@ -209,7 +209,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     void aim(Ahead& ahead, std::int32_t b, std::int32_t tail) const;
     void fetch_grains(Ahead& ahead) const;
     /// Grains of the next share that a tail's pairs meet: read by the tail, then written by their own thread.
-    void fetch_met(std::int32_t first, std::int32_t last, bool reading) const;
+    void fetch_met(std::int32_t first, std::int32_t last, const Sums& of, bool reading) const;
     /// One half of a tile some way on: its pairs and constants, or what they remember.
     void fetch_tile(std::int32_t tile, bool second_half) const;
     /// The block's pairs; what they do is added to the sums, or with `kept` left there, a tile each.

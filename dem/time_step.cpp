@@ -63,8 +63,9 @@ void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) c
 // threads.
 template <class T>
 [[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_met(std::int32_t first, std::int32_t last,
-                                                                  bool reading) const {
+                                                                  const Sums& of, bool reading) const {
     for (std::int32_t grain = first; grain <= last; grain += 2) {  // two a cache line, of the wide law
+        __builtin_prefetch(&of[grain], 1);
         if (reading) {
             __builtin_prefetch(&e.state_.place[grain], 0);
             __builtin_prefetch(&motion[grain], 0);
@@ -273,7 +274,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
             if (tails) {
                 for (int s = me; s < count; s += all) {
                     const Share& share = shares[s];
-                    fetch_met(first_grain(share.end), share.reach, true);
+                    if (s + 1 < count) fetch_met(first_grain(share.end), share.reach, sums_of(s + 1), true);
                     for (std::int32_t b = share.tail; b < share.end; ++b) {
                         Handed* const to = kept_of(share, blocks[b]);
                         pair_pass<kAdhesive, kRolling>(blocks[b], {}, to, nullptr);
@@ -290,7 +291,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
                 const Share& share = shares[s];
                 const Sums mine = sums_of(s);
                 double top = 0;
-                if (s > 0) fetch_met(first_grain(share.first), shares[s - 1].reach, false);
+                if (s > 0) fetch_met(first_grain(share.first), shares[s - 1].reach, mine, false);
                 Ahead ahead;
                 ahead.met = ahead.met_end = first_grain(share.first);
                 for (std::int32_t b = share.first; b < share.end; ++b) {
