@@ -10,7 +10,7 @@
 namespace gradwright {
 namespace {
 
-constexpr char kMark[] = "gradwright run 2\n";
+constexpr char kMark[] = "gradwright run 3\n";
 
 /// Both ways by one list of members, so that none is saved and not restored.
 struct Saver {
@@ -83,6 +83,7 @@ void Engine::archive(Archive& to) {
     to.value(body_time_);
     to.value(bodies_move_);
     to.value(steps_);
+    to.value(late_steps_);
     to.value(grain_steps_);
     to.value(frame_);
     to.value(frame_shift_);

@@ -6,8 +6,8 @@
 // `near_skin` (several times as often), which are what the law sees; both skins are what a pair of typical
 // grains gets, fast ones get more (reach.cpp). A near pair keeps its place between
 // refreshes, so that the law reads and writes its history in place and one grain's sums run over fixed slots
-// in fixed order: same bits on any number of threads, no atomics. (Measured alternative: test all candidates
-// every step and compress, see contact_list.cpp.)
+// in fixed order: same bits on any number of threads, no atomic sums. (Measured alternative: test all
+// candidates every step and compress, see contact_list.cpp.)
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,8 +44,9 @@ struct EngineOptions {
     double near_skin = 0;         ///< near-pair skin of two typical grains [m], 0 = from the grain size
     int threads = 0;              ///< 0 = OpenMP's default
     /// More grains than this do not fit in the processor's cache: memory is asked ahead, and when so many are
-    /// awake several steps are computed at once (time_step.cpp). The same bits, but for a list of pairs that
-    /// runs out within a few steps because grains become twice as fast in them.
+    /// awake several steps are computed at once (time_step.cpp). The end of a list of pairs is then looked
+    /// for every few steps, on any number of threads; steps that it came too late for are counted
+    /// (`late_steps`), and but for these the bits are the same.
     int cached_grains = 40000;
     double speed_limit = 20;       ///< faster grains mean the run has diverged [m/s]
     double remove_beyond_x = 1e9;  ///< grains past this x leave the run (overflow) [m]
@@ -112,6 +113,9 @@ class Engine {
     double time() const { return time_; }
     long steps() const { return steps_; }
     double grain_steps() const { return grain_steps_; }
+    /// Of the steps, those whose near pairs were of a list that had run out, so that some contact may have
+    /// been noticed late. Only beyond the cache, where grains became many times as fast within a few steps.
+    long late_steps() const { return late_steps_; }
     double time_step() const { return options_.time_step; }
     double sleep_time() const { return options_.sleep_time; }  ///< [s]
     const EngineTimes& times() const { return times_; }
@@ -128,7 +132,8 @@ class Engine {
     double share_overlapping(double ratio);
     double mean_coordination();    ///< contacts per mobile grain (floor and walls counted once)
     std::size_t contacts() const;  ///< pair contacts alive
-    /// Steps that the grains go through together, on all threads: more than 1 for a bed beyond the cache.
+    /// Steps that the grains go through together, on all threads: more than 1 for a bed beyond the cache, on
+    /// several threads only beyond a few times as much.
     int steps_at_once() const;
     std::size_t near_pairs() const;  ///< pairs that the law sees in every step, touching or not
     /// Grain indices whose overlap with a body exceeds `ratio` of their radius now.
@@ -195,7 +200,7 @@ class Engine {
     int threads_ = 1;
     double time_ = 0, body_time_ = 0;
     bool bodies_move_ = false;
-    long steps_ = 0;
+    long steps_ = 0, late_steps_ = 0;
     double grain_steps_ = 0;
     std::array<double, 3> frame_{};        ///< velocity of the frame [m/s]
     std::array<double, 3> frame_shift_{};  ///< its way since the candidates were found [m]
@@ -203,6 +208,7 @@ class Engine {
     double body_way_ = 0;  ///< of bodies against the frame since the candidates were found [m]
     double body_reach_ = 0, wide_body_reach_ = 0;  ///< of bodies [m]
     double still_rate_ = 0;  ///< of fixed and sleeping grains: share of their reach used up in a second [1/s]
+    double list_lasts_ = 0;  ///< steps, at the speeds that the near list was made for
     double travel_ = 0;      ///< largest share of a reach used up since the near list was made; 1 ends it
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;

@@ -1,18 +1,18 @@
 // Inside of the engine: near-pair tiles, records and passes, once for each number type of the law. Private to
 // dem/.
 //
-// One sweep a step. Grains stand in cell order, x slowest, and a pair belongs to its first, lower grain. So
-// once the pairs of a block of grains are computed, nothing that comes later in the order adds to its grains
-// or reads where they were, and they can be moved at once, while all of it is still in the cache: only the
-// width of the moving window, a layer of cells or two, has to fit there. A pair adds what it does to the sums
-// of both its grains, so that a grain's sum runs over its pairs in the order of their slots, whoever computed
-// them. On several threads each has a run of blocks; pairs of blocks that reach over its end (the tail) are
-// computed by all threads first and kept: what they do beyond the end is the first that is added there, what
-// they do within it waits until the sweep comes by. The same order, the same bits on any number of threads.
-// A bed that does not fit in the processor's cache is swept by several steps at once, one close behind the
-// other (run_in_levels): it comes from memory once for all of them.
-// Rejected: records by which a pair hands its force over, summed grain by grain. A grain has from none to a
-// dozen, which the processor cannot foresee: sums and motion took 17 ns a grain-step, motion alone takes 4.
+// One sweep a step. Grains stand in cell order, the bed's longer side slowest, and a pair belongs to its
+// first, lower grain. So once the pairs of a block of grains are computed, nothing that comes later in the
+// order adds to its grains or reads where they were, and they can be moved at once, while all of it is still
+// in the cache: only the width of the moving window, a layer of cells or two, has to fit there. A pair adds
+// what it does to the sums of both its grains, so that a grain's sum runs over its pairs in the order of
+// their slots, whoever computed them. On several threads each has a run of blocks; pairs of blocks that reach
+// over its end (the tail) are computed by all threads first and kept: what they do beyond the end is the
+// first that is added there, what they do within it waits until the sweep comes by. The same order, the same
+// bits on any number of threads. A bed that does not fit in the processor's cache is swept by several steps
+// at once, one close behind the other (run_in_levels): it comes from memory once for all of them. Rejected:
+// records by which a pair hands its force over, summed grain by grain. A grain has from none to a dozen,
+// which the processor cannot foresee: sums and motion took 17 ns a grain-step, motion alone takes 4.
 #pragma once
 #include <omp.h>
 
@@ -27,6 +27,9 @@ namespace gradwright {
 
 /// Largest sum of two wide reaches, in candidate skins: what a cell must hold beside two grains.
 inline constexpr double kWidestReach = 1.5;
+/// Longest near reach, in those of a typical grain: a fast grain that strikes a slow one makes it use up its
+/// reach so much faster than any did before.
+inline constexpr double kLongestReach = 4;
 
 /// Kernel-independent face of the tiles.
 struct Engine::Kernel {
@@ -234,6 +237,7 @@ struct Engine::KernelOf final : Engine::Kernel {
         /// Of what does not move by itself: share of its reach used up in a second [1/s].
         const double rest_rate = std::max(e.still_rate_, e.body_reach_ > 0 ? body_top / e.body_reach_ : 0);
         double law_seconds = 0, grain_seconds = 0;  ///< in the steps or blocks that were looked at
+        long late = 0;                              ///< steps begun when the near list had run out
         Step step(long number) const {
             return {first_kick && number == 0 ? 0.5 * dt : dt,
                     body_time + (e.bodies_move_ ? dt * static_cast<double>(number) : 0), number == steps - 1};
@@ -253,7 +257,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// More grains move than fit in the cache.
     bool beyond_cache() const { return static_cast<int>(e.awake_.size()) > e.options_.cached_grains; }
     /// Steps to go before the near list is looked at again: one, or beyond the cache so many that it lasts
-    /// even if the grains become twice as fast meanwhile. `step_share`: what the last step used of it.
+    /// even if grains use up their reaches four times as fast meanwhile; if still faster, the steps are
+    /// counted (Engine::late_steps). `step_share`: what the last step used of it.
     long steps_between_looks(double travel, double step_share) const;
     /// Clocks and counters after `done` steps of a run.
     void book_run(const Run& run, long done, double travel);

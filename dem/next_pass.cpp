@@ -54,7 +54,7 @@ Pass next_pass(const Scene& scene, const Stage& stage, const Pass& before, Engin
     pass.stand.assign(stage.grains(), Stand::gone);
     for (std::size_t i = 0; i < s.size(); ++i) {
         if (s.fixed[i] || s.x[i] >= end) continue;
-        const bool ahead = s.x[i] < platform;
+        const bool ahead = s.x[i] < platform || melts;  // on metal only what rolled there while it settled
         pass.stand[static_cast<std::size_t>(s.id[i] - first_mobile)] =
             ahead ? Stand::ahead : Stand::on_platform;
         if (ahead && s.z[i] > 0) pass.raised_solid_volume += sphere_volume(s.radius[i]);

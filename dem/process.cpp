@@ -163,6 +163,11 @@ class Spreading {
                 fmt::format(
                     "overlap reached {:.1f} % of the radius (3 % is the rule): raise numerics.softening",
                     100 * out_.health.max_overlap_ratio));
+        if (engine_.late_steps() > 0)
+            out_.health.warnings.push_back(fmt::format(
+                "in {} of {} steps grains had become so fast that contacts may have been noticed late: lower "
+                "numerics.time_step.rayleigh_fraction",
+                engine_.late_steps(), out_.steps));
         out_.energy = engine_.energy();
         out_.seconds = out_.seconds_cold = options_.machine_share * (omp_get_wtime() - start);
         return std::move(out_);

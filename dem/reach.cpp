@@ -24,7 +24,6 @@ namespace {
 // 1, 1.3 times 0.45 r_min + 0.15 r_max 48, 56, 61, 63, longest plans of 32, 48, 64 steps 63, 63, 65 with a
 // near skin of 0.2 r.
 constexpr double kMargin = 1.2;      // of reach over way in the time the list is meant to last: speeds change
-constexpr double kLongestReach = 4;  // in those of a typical grain
 constexpr double kLeastRoom = 0.35;  // of the wide reach, before the candidates are found anew
 constexpr double kLongestSteps = 48;  // that a reach is planned for: longer ones only add pairs
 
@@ -90,9 +89,9 @@ bool Engine::choose_reach() {
     int lacking = 0;
     reach_.resize(s.size());
     inverse_reach2_.resize(s.size());
-    double still_rate = 0;
+    double still_rate = 0, top_rate = 0;
     const double drift = length(frame_[0], frame_[1], frame_[2]);
-#pragma omp parallel for schedule(static) num_threads(threads_) reduction(max : still_rate, lacking)
+#pragma omp parallel for schedule(static) num_threads(threads_) reduction(max : still_rate, top_rate, lacking)
     for (std::size_t i = 0; i < s.size(); ++i) {
         const bool still = s.fixed[i] || s.asleep[i];
         const double speed =
@@ -106,11 +105,13 @@ bool Engine::choose_reach() {
         reach_[i] = static_cast<float>(reach);
         inverse_reach2_[i] = static_cast<float>(1 / (reach * reach));
         if (still) still_rate = std::max(still_rate, drift / reach);
+        top_rate = std::max(top_rate, speed / reach);
     }
     const double room = wide_body_reach_ - body_way_, want = wanted(body_speed());
     if (room < std::min(want, kLeastRoom * wide_body_reach_)) lacking = 1;
     body_reach_ = std::max(std::min(want, room), 1e-3 * typical);
     still_rate_ = still_rate;
+    list_lasts_ = 1 / (options_.time_step * std::max(top_rate, body_speed() / body_reach_));
     return lacking == 0;
 }
 

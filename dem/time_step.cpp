@@ -214,6 +214,7 @@ long Engine::KernelOf<T>::run_in_levels(long steps) {
         }
         double step_share = 0;
         for (const Level& one : level) {
+            run.late += !(travel <= 1);
             step_share = run.share(one.top);
             travel += step_share;
         }
@@ -246,6 +247,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
 #pragma omp parallel num_threads(count)
     {
         double my_travel = e.travel_;
+        long my_late = 0;
         Busy my_busy;
         long my_done = 0, look = 1;
         const int me = omp_get_thread_num(), all = omp_get_num_threads();
@@ -315,6 +317,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
             double top = 0;
             for (const Top& one : tops) top = std::max(top, one.of[step % 2]);
             const double step_share = run.share(top);
+            my_late += !(my_travel <= 1);
             my_travel += step_share;
             my_done = step + 1;
             if (my_done < look) continue;
@@ -325,6 +328,7 @@ long Engine::KernelOf<T>::run_with(long steps) {
         if (count == all) busy[me] = my_busy;
         if (me == 0) {
             travel = my_travel;
+            run.late = my_late;
             done = my_done;
         }
     }
@@ -336,7 +340,8 @@ long Engine::KernelOf<T>::run_with(long steps) {
 template <class T>
 long Engine::KernelOf<T>::steps_between_looks(double travel, double step_share) const {
     constexpr double kAtMost = 16;  // four times four: the fewer, the more often threads wait for the last
-    const double lasts = 0.5 * (1 - travel) / step_share;  // not a number when both are zero: look at once
+    constexpr double kJump = kLongestReach;  // what is struck may use up its reach so much faster
+    const double lasts = (1 - travel) / (kJump * step_share);  // no number when both are zero: look at once
     return !beyond_cache() || !(lasts >= 1) ? 1 : static_cast<long>(std::min(lasts, kAtMost));
 }
 
@@ -346,6 +351,7 @@ void Engine::KernelOf<T>::book_run(const Run& run, long done, double travel) {
     e.first_kick_ = false;
     e.travel_ = std::isfinite(travel) ? travel : 1e9;
     e.steps_ += done;
+    e.late_steps_ += run.late;
     e.steps_since_near_ += done;
     for (int k = 0; k < 3; ++k) e.frame_shift_[k] += run.frame[k] * dt * done;
     e.body_way_ += run.body_top * dt * done;

@@ -283,6 +283,12 @@ TEST_F(Layers, the_next_pass_stands_one_dose_higher_and_one_layer_deeper_and_the
         engine.start_bodies();
         engine.advance(400);
         ASSERT_GT(engine.body_shift_x(stage.blade), 0);
+        // one more on the land, about to roll down on the platform while all come to rest
+        for (std::size_t i = 0; i < s.size(); ++i)
+            if (s.id[i] == first + 3) {
+                s.place[i] = {platform_start(scene) - 1e-6, 0.13e-3, r, r};
+                s.vx[i] = 0.2;
+            }
         const Pass pass = next_pass(scene, stage, first_pass(scene, stage), engine, first);
         ASSERT_EQ(engine.failed(), "");
         EXPECT_EQ(pass.number, 2);
@@ -295,6 +301,8 @@ TEST_F(Layers, the_next_pass_stands_one_dose_higher_and_one_layer_deeper_and_the
         EXPECT_EQ(pass.stand[0], Stand::ahead);
         EXPECT_EQ(pass.stand[1], substrate == Substrate::fused ? Stand::gone : Stand::on_platform);
         EXPECT_EQ(pass.stand[2], Stand::gone);
+        // on metal it will be part of the layer; on powder it lies with what was laid before
+        EXPECT_EQ(pass.stand[3], substrate == Substrate::fused ? Stand::ahead : Stand::on_platform);
         for (std::size_t i = 0; i < s.size(); ++i) {
             if (s.id[i] == first) {
                 // up with the bed, and falling back on the land while the blade crosses the dispenser
