@@ -195,14 +195,19 @@ double Engine::mean_coordination() {
 }
 
 std::vector<std::size_t> Engine::overlapping_body(int body, double ratio) const {
-    std::vector<std::size_t> out;
     const Body& b = bodies_.at(body);
+    if (body_removed_[body]) return {};
+    std::vector<std::uint8_t> hit(state_.size(), 0);
+#pragma omp parallel for schedule(static) num_threads(threads_)
     for (std::size_t i = 0; i < state_.size(); ++i) {
-        if (state_.fixed[i] || body_removed_[body]) continue;
+        if (state_.fixed[i]) continue;
         const auto p = nearest_point(b, b.speed_x * body_time_, b.speed_z * body_time_, state_.x[i],
                                      state_.y[i], state_.z[i]);
-        if (state_.radius[i] - p.distance > ratio * state_.radius[i]) out.push_back(i);
+        hit[i] = state_.radius[i] - p.distance > ratio * state_.radius[i];
     }
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < hit.size(); ++i)
+        if (hit[i]) out.push_back(i);
     return out;
 }
 
@@ -249,11 +254,13 @@ std::string Engine::state_hash() const {
 void Engine::check_health() {
     double top = 0;
     bool finite = true;
+#pragma omp parallel for schedule(static) num_threads(threads_) reduction(max : top) reduction(&& : finite)
     for (std::size_t i = 0; i < state_.size(); ++i) {
         if (state_.fixed[i]) continue;
-        const double v2 =
-            state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i];
-        if (!std::isfinite(v2 + state_.x[i] + state_.y[i] + state_.z[i])) finite = false;
+        const Moving& m = state_.moving[i];
+        const double v2 = m.vx * m.vx + m.vy * m.vy + m.vz * m.vz;
+        const Place& p = state_.place[i];
+        finite = finite && std::isfinite(v2 + p.x + p.y + p.z);
         top = std::max(top, v2);
     }
     if (!finite)
