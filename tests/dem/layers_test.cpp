@@ -287,7 +287,7 @@ TEST_F(Layers, the_next_pass_stands_one_dose_higher_and_one_layer_deeper_and_the
         for (std::size_t i = 0; i < s.size(); ++i)
             if (s.id[i] == first + 3) {
                 s.place[i] = {platform_start(scene) - 1e-6, 0.13e-3, r, r};
-                s.vx[i] = 0.2;
+                s.vx[i] = 0.02;
             }
         const Pass pass = next_pass(scene, stage, first_pass(scene, stage), engine, first);
         ASSERT_EQ(engine.failed(), "");
