@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/speed-against-error.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_speed.py [tradeoff] [reduced] [threads] [heap] [sizes] [lammps]
+    python3 docs/make_speed.py [ladder] [tradeoff] [reduced] [threads] [heap] [sizes] [lammps]
 
-Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `tradeoff` and
-`reduced` together take a quarter of an hour on two free cores, `threads`, `heap` and `sizes` a minute or two each once their beds are cached. Nothing else may run meanwhile.
+Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `ladder` takes an
+hour on two free cores, `tradeoff` and `reduced` together a quarter of one, `threads`, `heap` and `sizes` a minute or two each once their beds are cached. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
 import json
@@ -17,7 +17,9 @@ from measured import ROOT, shown
 RUNS = os.path.join(ROOT, "runs", "speed")
 PAGE = os.path.join(ROOT, "docs", "speed-against-error.md")
 
-# The first example at half its length: the finest level of the whole takes ten times as long as all of this table
+# Each reduction alone, from the finest level, on the whole of the first example
+LADDER = ["tradeoff", "examples/01_linear_coupon.toml"]
+# At half its length and around the study, which is cheaper
 HALF = ["--set", 'machine.dispenser.length="1.6 mm"', "--set", 'machine.platform.length="1.6 mm"', "--set", 'machine.land="1.6 mm"',
         "--set", 'target.footprint.x=["0.8 mm", "1.6 mm"]']
 # the set that the examples use now, whole, against the finest
@@ -47,7 +49,7 @@ def tradeoff_table(name, words):
             continue
         word = "recommended" if l["name"] == a["recommended"] else "" if l["name"] == "finest" else "beyond the noise" if not l["within_noise"] else "overlaps too large" if not l["overlap_rule_kept"] else "free"
         rows.append(f"| {l['name']} | {l['grains']:.0f} | {l['steps']:.0f} | {l['grain_steps']:.2e} | {l['seconds']:.0f} | {l['speed_up']:.2f} | {l['gi_rmse']:.3f} | {l['noise_floor']:.3f} | {100 * l['packing_error']:+.1f} % | {100 * l['max_overlap_ratio']:.1f} % | {word} |")
-    if name != "tradeoff":
+    if name == "reduced":
         return "\n".join(rows)
     rows.append("\nWhat the levels are: " + "; ".join(f"*{l['name']}*: {l['meaning']}" for l in a["levels"]) + ".")
     if a["recommended"]:
@@ -93,16 +95,16 @@ def keep_levels():
     of_setting = ("names", "softening", "rayleigh_fraction", "coarse_factor", "sleep")
     of_level = ("name", "meaning", "status", "reason", "grains", "steps", "seconds", "speed_up", "gi_rmse", "noise_floor", "packing_error", "max_overlap_ratio", "within_noise", "overlap_rule_kept")
     tables = []
-    for name, words in (("tradeoff", TRADEOFF), ("reduced", REDUCED)):
+    for name, words in (("tradeoff", TRADEOFF), ("reduced", REDUCED), ("ladder", LADDER)):
         a = answer(name, words)
         levels = [{**{k: l[k] for k in of_level}, "reductions": {k: l["reductions"][k] for k in of_setting}} for l in a["levels"] if l["grains"] is not None]
-        tables.append({"command": shown(words), "study": a["study"] + " at half its length", "seeds": a["seeds"], "noise_allowed": a["noise_allowed"], "isa": a["provenance"]["host"]["isa"], "levels": levels})
+        tables.append({"command": shown(words), "study": a["study"] + ("" if name == "ladder" else " at half its length"), "seeds": a["seeds"], "noise_allowed": a["noise_allowed"], "isa": a["provenance"]["host"]["isa"], "levels": levels})
     with open(os.path.join(measured.DOCS, "data", "speed-against-error.json"), "w") as file:
         json.dump(tables, file, indent=1, sort_keys=True)
         file.write("\n")
 
 
-TABLES = {"lammps": lammps_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: two_threads_table("threads", THREADS), "heap": lambda: two_threads_table("heap", HEAP), "sizes": sizes_table}
+TABLES = {"lammps": lammps_table, "ladder": lambda: tradeoff_table("ladder", LADDER), "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: two_threads_table("threads", THREADS), "heap": lambda: two_threads_table("heap", HEAP), "sizes": sizes_table}
 measured.fill(PAGE, TABLES)
-if {"tradeoff", "reduced"} & set(sys.argv[1:] or TABLES):
+if {"ladder", "tradeoff", "reduced"} & set(sys.argv[1:] or TABLES):
     keep_levels()

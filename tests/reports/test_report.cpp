@@ -101,13 +101,13 @@ TEST(Report, knows_what_the_reductions_in_use_cost) {
     EXPECT_EQ(cost["own"], false);
     std::ifstream file(std::string(GRADWRIGHT_SOURCE_DIR) + "/docs/speed-against-error.md");
     const std::string page((std::istreambuf_iterator<char>(file)), {});
-    const std::string reduced = page.substr(page.find("<!-- reduced: begin"));
+    const std::string ladder = page.substr(page.find("<!-- ladder: begin"));
     for (const auto& level : cost["levels"]) {
         if (level["name"] != "study") continue;
         char row[64];
         std::snprintf(row, sizeof row, "| %.2f | %.3f | %.3f |", level["speed_up"].get<double>(),
                       level["gi_rmse"].get<double>(), level["noise_floor"].get<double>());
-        EXPECT_THAT(reduced, HasSubstr(row));
+        EXPECT_THAT(ladder, HasSubstr(row));
     }
     // one setting aside, and nothing is known
     study.scene.rayleigh_fraction = 0.31;
