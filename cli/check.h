@@ -8,10 +8,10 @@
 
 namespace gradwright::cli {
 
-/// Grain-steps per second and core assumed when no other figure is given [1/s]: the least the engine is asked
-/// to reach on a settled bed of 20 000 grains in the default study's physics. `gradwright bench` measures the
-/// machine at hand.
-inline constexpr double kAssumedSpeed = 6e6;
+/// Grain-steps per second and core assumed when no other figure is given [1/s]: half of what a core with
+/// AVX-512 does on a heap before the blade in the default study's physics (docs/speed-against-error.md).
+/// `gradwright bench` measures the machine at hand.
+inline constexpr double kAssumedSpeed = 20e6;
 /// Packing of a settled bed assumed before one has been packed [-]: loose random packing of frictional
 /// grains.
 inline constexpr double kAssumedBedPacking = 0.55;
