@@ -1,8 +1,11 @@
 // gradwright: the front door. Parses the command line, calls one verb, maps every failure to a message and an
 // exit code.
 #include <fmt/format.h>
-#include <malloc.h>
 #include <unistd.h>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <cctype>
 #include <cstdio>
@@ -223,7 +226,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
 #ifdef __GLIBC__
     // Lists of pairs are made anew many times a second: what they leave is kept for the next ones instead of
-    // going back to the system page by page (a fiftieth of a spread's time).
+    // going back to the system page by page. The strip of the first example, one thread: 26.7 to 26.3 s, at
+    // 65 instead of 48 MB.
     mallopt(M_MMAP_THRESHOLD, 1 << 28);
     mallopt(M_TRIM_THRESHOLD, 1 << 28);
 #endif

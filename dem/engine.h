@@ -208,8 +208,10 @@ class Engine {
     double body_way_ = 0;  ///< of bodies against the frame since the candidates were found [m]
     double body_reach_ = 0, wide_body_reach_ = 0;  ///< of bodies [m]
     double still_rate_ = 0;  ///< of fixed and sleeping grains: share of their reach used up in a second [1/s]
-    double list_lasts_ = 0;  ///< steps, at the speeds that the near list was made for
-    double travel_ = 0;      ///< largest share of a reach used up since the near list was made; 1 ends it
+    /// Steps, at the speeds that the near list was made for; decides who sweeps what and so no bits, not
+    /// saved.
+    double list_lasts_ = 0;
+    double travel_ = 0;  ///< largest share of a reach used up since the near list was made; 1 ends it
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;
     double max_overlap_seen_ = 0;

@@ -211,7 +211,8 @@ struct Engine::KernelOf final : Engine::Kernel {
     /// Where `ahead` is to get to during block `b` of a share whose tail begins at `tail`.
     void aim(Ahead& ahead, std::int32_t b, std::int32_t tail) const;
     void fetch_grains(Ahead& ahead) const;
-    /// Grains of the next share that a tail's pairs meet: read by the tail, then written by their own thread.
+    /// Grains of the next share that a tail's pairs meet, and their sums: the tail reads the one and adds to
+    /// the other, then their own thread writes both.
     void fetch_met(std::int32_t first, std::int32_t last, const Sums& of, bool reading) const;
     /// One half of a tile some way on: its pairs and constants, or what they remember.
     void fetch_tile(std::int32_t tile, bool second_half) const;

@@ -58,9 +58,8 @@ void Engine::KernelOf<T>::aim(Ahead& ahead, std::int32_t b, std::int32_t tail) c
 }
 
 // What the pairs of one share's tail do to the next share's grains goes from core to core and back in every
-// step: all asked for at once, as these are few and the computing would only wait for one after the other.
-// Where the cores share no cache 47 to 49 million grain-steps/s, the heap of 10 000 awake grains, two
-// threads.
+// step: places, motions and sums, all asked for at once, as these are few and the computing would only wait
+// for one after the other. Without the sums a twelfth of the tail's thread stood in one addition.
 template <class T>
 [[gnu::always_inline]] inline void Engine::KernelOf<T>::fetch_met(std::int32_t first, std::int32_t last,
                                                                   const Sums& of, bool reading) const {

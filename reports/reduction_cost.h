@@ -1,6 +1,6 @@
 // What the reductions that a study uses are known to cost: from the study's own `tradeoff`, else from the
-// table of docs/speed-against-error.md, which was measured on the first example and
-// travels inside the program.
+// table of docs/speed-against-error.md, which was measured on the first example and travels inside the
+// program.
 #pragma once
 #include <nlohmann/json.hpp>
 
