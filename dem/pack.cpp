@@ -146,8 +146,7 @@ struct Settling {
         const long burst = 250;
         // Long steps: none may fall asleep again while all must stand, for what sleeps presses on nothing.
         const bool drowsy = 3 * static_cast<double>(burst) * engine.time_step() > engine.sleep_time();
-        constexpr int kShortest = 20, kLongest = 160;  // in bursts
-        int bursts = 0, quench = kShortest, pause = kShortest;
+        int bursts = 0, quench = 20, pause = 20;  // in bursts
         while (engine.steps() - start < most && engine.failed().empty()) {
             if (options.stop && options.stop->load()) return false;
             engine.advance(burst);
@@ -156,12 +155,11 @@ struct Settling {
                 options.progress({stage, 0.99 * (1 - std::exp(-3 * done / static_cast<double>(most)))});
             if (speed_number() > 0.01) {
                 if (++bursts < quench) continue;
-                const bool few = moving_share() < 0.01;
-                if (few) {
+                if (moving_share() < 0.01) {
                     engine.scale_velocities(0.25);
-                    pause = std::min(kLongest, pause + pause / 4);
+                    pause += pause / 4;
                 }
-                quench = bursts + (few ? pause : kShortest);
+                quench = bursts + pause;
                 continue;
             }
             engine.wake_all();

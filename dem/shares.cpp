@@ -94,8 +94,8 @@ void Engine::KernelOf<T>::share_out() {
 
 template <class T>
 void Engine::KernelOf<T>::choose_levels() {
-    // Steps at once, of all threads. Two are enough where the bed is ten times the cache, not where it is a
-    // little larger; eight are no better.
+    // Steps at once, of all threads together. Two are enough where the bed is ten times the cache, not where
+    // it is a little larger; eight are no better.
     constexpr int kAtOnce = 4;
     // Threads that have a share each also have the room of their own caches: 100 000 grains on two threads 86
     // million grain-steps/s by shares, 80 by levels, 300 000 grains 73 and 85.
@@ -112,7 +112,7 @@ void Engine::KernelOf<T>::choose_levels() {
     // by levels.
     constexpr double kLongList = 100;
     if (e.threads_ > 1 && e.list_lasts_ < kLongList) return;
-    const int each = std::max(1, kAtOnce / e.threads_);
+    const int each = kAtOnce / e.threads_;
     std::int32_t window = 1;
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(blocks.size()); ++b)
         window = std::max(window, last_met(b) - b + 1);
