@@ -10,7 +10,7 @@
 namespace gradwright {
 namespace {
 
-constexpr char kMark[] = "gradwright run 3\n";
+constexpr char kMark[] = "gradwright run 4\n";
 
 /// Both ways by one list of members, so that none is saved and not restored.
 struct Saver {
@@ -97,7 +97,7 @@ void Engine::archive(Archive& to) {
     to.value(steps_since_near_);
     to.value(lists_valid_);
     to.value(first_kick_);
-    to.value(max_overlap_seen_);
+    to.value(overlaps_seen_);
     to.value(built_from_);
     to.value(built_error_);
     to.array(built_);

@@ -497,17 +497,14 @@ void Engine::KernelOf<T>::for_each_overlap(Visitor&& visit) const {
 }
 
 template <class T>
-double Engine::KernelOf<T>::max_overlap_ratio() const {
-    double top = 0;
-    for_each_overlap([&](double ratio) { top = std::max(top, ratio); });
-    return top;
-}
-
-template <class T>
-std::size_t Engine::KernelOf<T>::contacts_beyond(double limit) const {
-    std::size_t count = 0;
-    for_each_overlap([&](double ratio) { count += ratio > limit; });
-    return count;
+Engine::Overlaps Engine::KernelOf<T>::overlaps(double rule) const {
+    Overlaps seen;
+    for_each_overlap([&](double ratio) {
+        seen.largest = std::max(seen.largest, ratio);
+        seen.contacts += ratio > 0;
+        seen.beyond += ratio > rule;
+    });
+    return seen;
 }
 
 template <class T>

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "dem/kernel.h"
+#include "dem/layer.h"
 
 namespace gradwright {
 namespace {
@@ -171,11 +172,11 @@ double Engine::kinetic_energy() const {
 }
 
 double Engine::max_overlap_ratio() {
-    return kernel_->max_overlap_ratio();
+    return kernel_->overlaps(kOverlapRule).largest;
 }
 double Engine::share_overlapping(double ratio) {
     const double grains = static_cast<double>(mobile());
-    return grains > 0 ? static_cast<double>(kernel_->contacts_beyond(ratio)) / grains : 0;
+    return grains > 0 ? kernel_->overlaps(ratio).beyond / grains : 0;
 }
 std::size_t Engine::contacts() const {
     return kernel_->contacts();
@@ -297,7 +298,12 @@ long Engine::advance(long steps) {
             lists_valid_ = true;
             travel_ = 0;
             steps_since_near_ = 0;
-            if (rebuild) max_overlap_seen_ = std::max(max_overlap_seen_, kernel_->max_overlap_ratio());
+            if (rebuild) {
+                const Overlaps now = kernel_->overlaps(kOverlapRule);
+                overlaps_seen_.largest = std::max(overlaps_seen_.largest, now.largest);
+                overlaps_seen_.contacts += now.contacts;
+                overlaps_seen_.beyond += now.beyond;
+            }
             times_.near_list += omp_get_wtime() - middle;
             ++times_.near_lists;
             times_.candidate_lists += rebuild;

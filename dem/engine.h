@@ -127,7 +127,11 @@ class Engine {
     double max_speed() const;       ///< over mobile grains [m/s]
     double kinetic_energy() const;  ///< [J]
     double max_overlap_ratio();     ///< overlap / smaller radius now, over near pairs and walls
-    double max_overlap_ratio_seen() const { return max_overlap_seen_; }
+    double max_overlap_ratio_seen() const { return overlaps_seen_.largest; }
+    /// Of the contacts seen, whenever lists were made from scratch, those beyond kOverlapRule [-].
+    double deep_contact_share() const {
+        return overlaps_seen_.contacts > 0 ? overlaps_seen_.beyond / overlaps_seen_.contacts : 0;
+    }
     /// Share of mobile grains in a contact whose overlap exceeds `ratio` of the smaller radius now [-].
     double share_overlapping(double ratio);
     double mean_coordination();    ///< contacts per mobile grain (floor and walls counted once)
@@ -214,7 +218,11 @@ class Engine {
     double travel_ = 0;  ///< largest share of a reach used up since the near list was made; 1 ends it
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;
-    double max_overlap_seen_ = 0;
+    /// Overlaps over the smaller radius, of pairs and walls alike.
+    struct Overlaps {
+        double largest = 0, contacts = 0, beyond = 0;  ///< [-]; numbers of contacts, of those beyond a rule
+    };
+    Overlaps overlaps_seen_;
     std::string failed_;
     EngineTimes times_;
     EnergyLedger energy_;

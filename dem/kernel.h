@@ -52,8 +52,7 @@ struct Engine::Kernel {
     virtual std::size_t near_pairs() const = 0;
     virtual double coordination_sum() const = 0;
     virtual void forget_body(int body) = 0;
-    virtual double max_overlap_ratio() const = 0;
-    virtual std::size_t contacts_beyond(double ratio) const = 0;  ///< overlap / smaller radius
+    virtual Overlaps overlaps(double rule) const = 0;
     virtual double memory_bytes() const = 0;
     virtual void restored() = 0;             ///< what is not saved follows from what is
     virtual void remember_for_energy() = 0;  ///< what the step is going to change
@@ -295,8 +294,7 @@ struct Engine::KernelOf final : Engine::Kernel {
     void forget_body(int body) override;
     template <class Visitor>
     void for_each_overlap(Visitor&& visit) const;
-    double max_overlap_ratio() const override;
-    std::size_t contacts_beyond(double ratio) const override;
+    Overlaps overlaps(double rule) const override;
     double memory_bytes() const override;
     template <class Archive>
     void archive(Archive& to);

@@ -7,12 +7,18 @@
 
 namespace gradwright {
 
+/// Overlap over the smaller radius from which on a contact is too deep for its law [-] (physics.md 4: warn).
+inline constexpr double kOverlapRule = 0.03;
+/// Contacts beyond it that are still single ones: a grain wedged between floor and wall, say. Share [-].
+inline constexpr double kSingleContacts = 1e-4;
+
 /// State of a run. `ok` or a named physical failure with the knob to turn.
 struct RunHealth {
     std::string status = "not_run";  ///< ok | diverged | jammed | does_not_flow | starved | not_settled |
                                      ///< overlap | interrupted
     std::string reason;              ///< one sentence, with the knob to turn
     double max_overlap_ratio = 0;    ///< max overlap / smaller radius seen [-]
+    double deep_contact_share = 0;   ///< of all contacts seen, those beyond kOverlapRule [-]
     std::vector<std::string> warnings;
     bool ok() const { return status == "ok"; }
 };

@@ -157,12 +157,16 @@ class Spreading {
         out_.grain_steps = engine_.grain_steps();
         out_.all_grain_steps = static_cast<double>(out_.steps) * static_cast<double>(out_.grains);
         out_.health.max_overlap_ratio = engine_.max_overlap_ratio_seen();
-        if (out_.health.max_overlap_ratio > 0.03)
+        out_.health.deep_contact_share = engine_.deep_contact_share();
+        if (const RunHealth& h = out_.health; h.max_overlap_ratio > kOverlapRule)
             out_.health.warnings.insert(
                 out_.health.warnings.begin(),
-                fmt::format(
-                    "overlap reached {:.1f} % of the radius (3 % is the rule): raise numerics.softening",
-                    100 * out_.health.max_overlap_ratio));
+                fmt::format("overlap reached {:.1f} % of the radius (3 % is the "
+                            "rule){} raise numerics.softening",
+                            100 * h.max_overlap_ratio,
+                            h.deep_contact_share > kSingleContacts
+                                ? fmt::format(", {:.1g} of all contacts went beyond:", h.deep_contact_share)
+                                : " at single contacts: where these matter,"));
         if (engine_.late_steps() > 0)
             out_.health.warnings.push_back(fmt::format(
                 "in {} of {} steps grains had become so fast that contacts may have been noticed late: lower "

@@ -87,6 +87,7 @@ const auto members = [](auto& io, auto& r) {
     io.text(h.status);
     io.text(h.reason);
     io.one(h.max_overlap_ratio);
+    io.one(h.deep_contact_share);
     io.count(h.warnings);
     for (auto& warning : h.warnings) io.text(warning);
     layer_members(io, r.layer);

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 constexpr const char* kAside = ".part";
 
 json number(double value) {
@@ -108,6 +108,7 @@ const auto health_fields = [](auto io, auto& health) {
     io("status", health.status);
     io("reason", health.reason);
     io("max_overlap_ratio", health.max_overlap_ratio);
+    io("deep_contact_share", health.deep_contact_share);
     io("warnings", health.warnings);
 };
 const auto design_fields = [](auto io, auto& design) {

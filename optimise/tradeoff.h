@@ -67,14 +67,15 @@ struct TradeoffLevel {
     // means over the runs
     std::vector<double> gi;
     double grains = 0, steps = 0, grain_steps = 0, seconds = 0, packing_fraction = 0, max_overlap_ratio = 0;
-    double speed_up = 0;       ///< seconds of the finest over this one's
-    double gi_rmse = 0;        ///< against the finest [GI]
-    double noise_floor = 0;    ///< rms difference expected from the beds alone
-    double gi_error = 0;       ///< sqrt(max(0, gi_rmse^2 - noise_floor^2))
-    double packing_error = 0;  ///< packing fraction over the finest's - 1
+    double deep_contact_share = 0;  ///< of all contacts seen, those beyond 3 % of a radius
+    double speed_up = 0;            ///< seconds of the finest over this one's
+    double gi_rmse = 0;             ///< against the finest [GI]
+    double noise_floor = 0;         ///< rms difference expected from the beds alone
+    double gi_error = 0;            ///< sqrt(max(0, gi_rmse^2 - noise_floor^2))
+    double packing_error = 0;       ///< packing fraction over the finest's - 1
     bool within_noise = false;
-    bool overlap_rule_kept =
-        true;  ///< largest overlap not beyond 3 % of a radius, or not beyond the finest's
+    /// Largest overlap not beyond 3 % of a radius, or not beyond the finest's, or only at single contacts
+    bool overlap_rule_kept = true;
 };
 
 struct Tradeoff {

@@ -412,6 +412,7 @@ json evaluation_json(const Study& study, const Evaluation& evaluation,
     object["objective"] = number(evaluation.objective);
     object["kinematic_error_bound"] = number(evaluation.kinematic_error_bound);
     object["max_overlap_ratio"] = number(evaluation.health.max_overlap_ratio);
+    object["deep_contact_share"] = number(evaluation.health.deep_contact_share);
     object["warnings"] = evaluation.health.warnings;
     object["inputs"] = inputs_json(study);
     object["reductions"] = study.reductions;

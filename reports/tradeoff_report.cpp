@@ -36,6 +36,7 @@ nlohmann::json run_json(const TradeoffRun& run) {
             {"reason", run.health.reason},
             {"warnings", run.health.warnings},
             {"max_overlap_ratio", number(run.health.max_overlap_ratio)},
+            {"deep_contact_share", number(run.health.deep_contact_share)},
             {"gi", numbers(run.gi)},
             {"packing_fraction", number(run.packing_fraction)},
             {"capture_fraction", number(run.capture_fraction)},
@@ -69,17 +70,23 @@ nlohmann::json level_json(const TradeoffLevel& level) {
             {"packing_fraction", known(level.packing_fraction)},
             {"packing_error", known(level.packing_error)},
             {"max_overlap_ratio", known(level.max_overlap_ratio)},
+            {"deep_contact_share", known(level.deep_contact_share)},
             {"within_noise", level.within_noise},
             {"overlap_rule_kept", level.overlap_rule_kept},
             {"gi", numbers(level.gi)},
             {"beds", beds}};
 }
 
+/// "0" only where there was none at all.
+std::string per_million(double share) {
+    return share > 0 && share < 1e-6 ? "< 1" : fmt::format("{:.0f}", 1e6 * share);
+}
+
 const char* marks(const TradeoffLevel& level, const Tradeoff& t) {
     if (level.name == t.recommended) return "<-- recommended";
     if (level.name == "finest") return "";
     if (!level.within_noise) return "error beyond the noise";
-    if (!level.overlap_rule_kept) return "overlaps beyond 3 %";
+    if (!level.overlap_rule_kept) return "overlaps too large";
     return "";
 }
 
@@ -112,9 +119,10 @@ std::string tradeoff_text(const Study& study, const Tradeoff& t) {
     std::string out = fmt::format(
         "{}: speed against error, {} of {} beds each (means; seconds with an empty cache, packing "
         "included)\n\n"
-        "{:<22} {:>8} {:>9} {:>11} {:>8} {:>8} {:>7} {:>7} {:>8} {:>8}\n",
+        "{:<22} {:>8} {:>9} {:>11} {:>8} {:>8} {:>7} {:>7} {:>8} {:>8} {:>8}\n",
         study.name, t.fidelity == Fidelity::map ? "relabelled strips" : "labelled spreads", t.seeds, "level",
-        "grains", "steps", "grain-steps", "seconds", "speed-up", "GI rms", "floor", "packing", "overlap");
+        "grains", "steps", "grain-steps", "seconds", "speed-up", "GI rms", "floor", "packing", "overlap",
+        "deep");
     for (const TradeoffLevel& level : t.levels) {
         if (!(level.grains > 0)) {
             out += fmt::format("{:<22} {}{}{}\n", level.name, level.status, level.reason.empty() ? "" : ": ",
@@ -122,17 +130,20 @@ std::string tradeoff_text(const Study& study, const Tradeoff& t) {
             continue;
         }
         out += fmt::format(
-            "{:<22} {:>8.0f} {:>9.0f} {:>11.2e} {:>8.1f} {:>8.2f} {:>7.3f} {:>7.3f} {:>+7.1f}% {:>7.1f}%  "
+            "{:<22} {:>8.0f} {:>9.0f} {:>11.2e} {:>8.1f} {:>8.2f} {:>7.3f} {:>7.3f} {:>+7.1f}% {:>7.1f}% "
+            "{:>8}  "
             "{}\n",
             level.name, level.grains, level.steps, level.grain_steps, level.seconds, level.speed_up,
             level.gi_rmse, level.noise_floor, 100 * level.packing_error, 100 * level.max_overlap_ratio,
-            level.status == "ok" ? marks(level, t) : level.status);
+            per_million(level.deep_contact_share), level.status == "ok" ? marks(level, t) : level.status);
     }
     out += fmt::format(
         "\nGI rms: difference of the mean GI(y) to the finest level's. Floor: what the beds alone would "
         "give; a level "
-        "is free\nup to {} floors. Packing: against the finest; overlap: largest, of a radius.\n",
-        kTradeoffNoise);
+        "is free\nup to {} floors. Packing: against the finest; overlap: largest, of a radius; deep: "
+        "contacts in a "
+        "million\nthat overlap by more than 3 %, {:.0f} at most or the largest overlap must keep to it.\n",
+        kTradeoffNoise, 1e6 * kSingleContacts);
     if (t.recommended.empty())
         out += "Nothing can be recommended: no level has two beds, or none is within the noise.\n";
     else

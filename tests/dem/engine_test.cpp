@@ -479,6 +479,27 @@ TEST(Lists, no_touching_pair_or_wall_contact_is_missed_however_fast_single_grain
     EXPECT_GT(walls, 100);
 }
 
+TEST_P(EngineOf, deep_contacts_are_a_share_of_those_seen) {
+    // Pairs at 1, 5 and 12 % of the smaller radius, one grain at 4 % in the floor: too heavy to move.
+    Engine e(bare(GetParam()));
+    e.add_body(plane_z());
+    double x = 0;
+    for (const double overlap : {0.01, 0.05, 0.12}) {
+        const double small = 0.5 * kRadius;
+        e.add_grain({.x = x, .z = 5 * kRadius, .radius = kRadius, .material = 3});
+        e.add_grain({.x = x, .z = 6 * kRadius + small - overlap * small, .radius = small, .material = 3});
+        x += 10 * kRadius;
+    }
+    e.add_grain({.x = x, .z = 0.96 * kRadius, .radius = kRadius, .material = 3});
+    e.advance(1);
+    EXPECT_NEAR(e.max_overlap_ratio_seen(), 0.12, 1e-6);
+    EXPECT_DOUBLE_EQ(e.deep_contact_share(), 3.0 / 4);
+    Engine again(bare(GetParam()));
+    again.add_body(plane_z());
+    again.restore(e.save());
+    EXPECT_DOUBLE_EQ(again.deep_contact_share(), 3.0 / 4);
+}
+
 TEST(Failure, grains_at_one_place_are_a_failed_run_and_not_a_silent_one) {
     for (const Precision precision : {Precision::double_law, Precision::single_law}) {
         Engine e(bare(precision));

@@ -294,9 +294,16 @@ TEST(Tradeoff, grains_that_overlap_too_much_are_not_recommended_however_fast) {
     compare_levels(t);
     EXPECT_EQ(t.recommended, "study");
     t.levels[1].runs[0].health.max_overlap_ratio = 0.04;
+    t.levels[1].runs[0].health.deep_contact_share = 5e-4;
+    t.levels[1].runs[1].health.deep_contact_share = 1e-4;
     compare_levels(t);
+    EXPECT_NEAR(t.levels[1].deep_contact_share, 3e-4, 1e-15);
     EXPECT_TRUE(t.levels[1].within_noise);
     EXPECT_EQ(t.recommended, "finest");
+    // the same largest overlap, but of a single grain
+    for (TradeoffRun& run : t.levels[1].runs) run.health.deep_contact_share = 2e-5;
+    compare_levels(t);
+    EXPECT_EQ(t.recommended, "study");
 }
 
 }  // namespace
