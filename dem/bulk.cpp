@@ -123,7 +123,6 @@ ReposeResult drain(const Scene& scene, const ReposeSetup& setup, const SpreadOpt
     out.at_rest = calm >= 2;
     out.flow_time = engine.time();
     out.health.max_overlap_ratio = engine.max_overlap_ratio_seen();
-    out.health.deep_contact_share = engine.deep_contact_share();
     if (!engine.failed().empty()) {
         out.health.status = "diverged";
         out.health.reason = "the draining heap diverged (" + engine.failed() +

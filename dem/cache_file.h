@@ -10,7 +10,7 @@
 namespace gradwright {
 
 inline constexpr int kEngineFormat =
-    12;  ///< raise when the engine makes other beds or layers from the same scene
+    12;  ///< raise when the engine makes other beds or layers from the same scene, or stores more of them
 
 /// Bytes stored under `key`, none when there are none or they are damaged.
 std::optional<std::string> read_cache(const std::string& folder, const std::string& kind,

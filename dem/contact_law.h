@@ -31,6 +31,12 @@
 
 namespace gradwright {
 
+/// Overlap over the smaller radius beyond which a contact is too deep for the law [-] (physics.md 4: warn).
+inline constexpr double kOverlapRule = 0.03;
+/// Share of contacts that may be [-], as of grains that may be crushed (process.cpp): a grain wedged between
+/// floor and wall, two contacts of a few thousand, says nothing of the bed.
+inline constexpr double kDeepContacts = 1e-3;
+
 /// Numbers equal for all contacts of a run.
 struct LawConstants {
     double time_step = 0;         ///< [s]

@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "dem/kernel.h"
-#include "dem/layer.h"
 
 namespace gradwright {
 namespace {

@@ -128,7 +128,9 @@ class Engine {
     double kinetic_energy() const;  ///< [J]
     double max_overlap_ratio();     ///< overlap / smaller radius now, over near pairs and walls
     double max_overlap_ratio_seen() const { return overlaps_seen_.largest; }
-    /// Of the contacts seen, whenever lists were made from scratch, those beyond kOverlapRule [-].
+    /// Of the contacts seen whenever lists were made from scratch, those beyond kOverlapRule [-]. Grains that
+    /// sleep count, faces that yield do not; lists are made as grains travel, so that quiet times count
+    /// little. Since the first step, whatever was moved by hand in between. 0 before it.
     double deep_contact_share() const {
         return overlaps_seen_.contacts > 0 ? overlaps_seen_.beyond / overlaps_seen_.contacts : 0;
     }
@@ -218,7 +220,7 @@ class Engine {
     double travel_ = 0;  ///< largest share of a reach used up since the near list was made; 1 ends it
     long steps_since_near_ = 0;
     bool lists_valid_ = false, first_kick_ = true;
-    /// Overlaps over the smaller radius, of pairs and walls alike.
+    /// Overlaps over the smaller radius, of pairs and of walls that do not yield.
     struct Overlaps {
         double largest = 0, contacts = 0, beyond = 0;  ///< [-]; numbers of contacts, of those beyond a rule
     };

@@ -1,16 +1,12 @@
 // What one spread leaves: every laid grain with where it lies, where it came from, and what it carried.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace gradwright {
-
-/// Overlap over the smaller radius from which on a contact is too deep for its law [-] (physics.md 4: warn).
-inline constexpr double kOverlapRule = 0.03;
-/// Contacts beyond it that are still single ones: a grain wedged between floor and wall, say. Share [-].
-inline constexpr double kSingleContacts = 1e-4;
 
 /// State of a run. `ok` or a named physical failure with the knob to turn.
 struct RunHealth {
@@ -18,7 +14,8 @@ struct RunHealth {
                                      ///< overlap | interrupted
     std::string reason;              ///< one sentence, with the knob to turn
     double max_overlap_ratio = 0;    ///< max overlap / smaller radius seen [-]
-    double deep_contact_share = 0;   ///< of all contacts seen, those beyond kOverlapRule [-]
+    /// Of the contacts seen, those beyond kOverlapRule [-] (Engine::deep_contact_share); NaN: nobody looked
+    double deep_contact_share = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::string> warnings;
     bool ok() const { return status == "ok"; }
 };

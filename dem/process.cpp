@@ -161,12 +161,9 @@ class Spreading {
         if (const RunHealth& h = out_.health; h.max_overlap_ratio > kOverlapRule)
             out_.health.warnings.insert(
                 out_.health.warnings.begin(),
-                fmt::format("overlap reached {:.1f} % of the radius (3 % is the "
-                            "rule){} raise numerics.softening",
-                            100 * h.max_overlap_ratio,
-                            h.deep_contact_share > kSingleContacts
-                                ? fmt::format(", {:.1g} of all contacts went beyond:", h.deep_contact_share)
-                                : " at single contacts: where these matter,"));
+                fmt::format("overlap reached {:.1f} % of the radius; {:.0f} contacts in a million went "
+                            "beyond the rule of 3 %: above {:.0f} raise numerics.softening",
+                            100 * h.max_overlap_ratio, 1e6 * h.deep_contact_share, 1e6 * kDeepContacts));
         if (engine_.late_steps() > 0)
             out_.health.warnings.push_back(fmt::format(
                 "in {} of {} steps grains had become so fast that contacts may have been noticed late: lower "

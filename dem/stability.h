@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/contact_law.h"
 #include "dem/material.h"
 #include "dem/scene.h"
 
@@ -23,10 +24,10 @@ enum class StabilityPacking {
 
 struct StabilitySetup {
     StabilityPacking packing = StabilityPacking::heap;
-    double size_ratio = 1;      ///< largest over smallest radius [-], >= 1
-    double overlap = 0.03;      ///< largest overlap over the smaller radius [-], 0..0.3
-    Interaction interaction;    ///< work_of_adhesion as the engine uses it: no scaling is applied
-    bool free_dashpot = false;  ///< the deliberate fault of that name (contact_law.h)
+    double size_ratio = 1;          ///< largest over smallest radius [-], >= 1
+    double overlap = kOverlapRule;  ///< largest overlap over the smaller radius [-], 0..0.3
+    Interaction interaction;        ///< work_of_adhesion as the engine uses it: no scaling is applied
+    bool free_dashpot = false;      ///< the deliberate fault of that name (contact_law.h)
     Precision precision = Precision::double_law;  ///< tiny motions: float would add its own
     std::uint64_t seed = 1;
 };

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/speed-against-error.md from runs of the program. Usage, from the project's root:
 
-    python3 docs/make_speed.py [ladder] [shipped] [tradeoff] [reduced] [threads] [heap] [sizes] [lammps]
+    python3 docs/make_speed.py [ladder] [around] [shipped] [threads] [heap] [sizes] [lammps]
 
 Answers are kept in runs/speed/, so that a second call only rewrites the page; delete one to measure it again. `ladder` takes an
-hour on two free cores, `tradeoff` and `reduced` together a quarter of one, `threads`, `heap` and `sizes` a minute or two each once their beds are cached. Nothing else may run meanwhile.
+hour on two free cores, `around` a quarter of one and `shipped` half of one after it, `threads`, `heap` and `sizes` a minute or two each
+once their beds are cached. Nothing else may run meanwhile.
 GRADWRIGHT in the environment names another program than ./gradwright. Needs nothing but Python's standard library.
 """
 import json
@@ -19,15 +20,16 @@ PAGE = os.path.join(ROOT, "docs", "speed-against-error.md")
 
 # Each reduction alone, from the finest level, on the whole of the first example
 LADDER = ["tradeoff", "examples/01_linear_coupon.toml"]
-SHIPPED = ["02_sigmoid_coupon", "08_a_b_a", "09_table", "10_premixed_sigmoid"]
-# At half its length and around the study, which is cheaper
-HALF = ["--set", 'machine.dispenser.length="1.6 mm"', "--set", 'machine.platform.length="1.6 mm"', "--set", 'machine.land="1.6 mm"',
+# One step away from the study
+AROUND = ["tradeoff", "examples/01_linear_coupon.toml", "--around", "study"]
+# The same spreads, read for another target
+SAME_RIG = ["02_sigmoid_coupon", "08_a_b_a", "09_table", "10_premixed_sigmoid"]
+# Other powders, another motion, a field: the set as a whole, on the rig at half its length
+HALF = ["--level", "study", "--set", 'machine.dispenser.length="1.6 mm"', "--set", 'machine.platform.length="1.6 mm"', "--set", 'machine.land="1.6 mm"',
         "--set", 'target.footprint.x=["0.8 mm", "1.6 mm"]']
-# the set that the examples use now, whole, against the finest
-REDUCED = ["tradeoff", "examples/01_linear_coupon.toml", "--around", "study", "--level", "study", "--seeds", "3", *HALF]
-TRADEOFF = ["tradeoff", "examples/01_linear_coupon.toml", "--around", "study", "--seeds", "3", *HALF,
-            # what the example was before this table chose its set
-            "--set", 'numerics.reductions=["fines_cut", "shallow_bed", "strip_map"]', "--set", "numerics.time_step.rayleigh_fraction=0.2"]
+OTHERS = {"04_unlike_alloys": HALF, "06_316l_cucrzr": HALF, "07_two_sizes": HALF,
+          "11_joint_search": [*HALF, "--set", 'design_space.footprint_offset=["-0.4 mm", "0 mm"]'],
+          "12_three_layers": ["--level", "study", "--seeds", "2"], "13_field": HALF}
 THREADS = ["bench", "--grains", "17000", "--threads", "1", "--threads", "2", "--state", "settled", "--state", "flowing", "--steps", "2000"]
 SIZES = ["bench", "--grains", "7000", "--grains", "20000", "--grains", "70000", "--grains", "200000", "--grains", "700000", "--threads", "1", "--steps", "100"]
 HEAP = ["bench", "--state", "spread", "--grains", "20000", "--threads", "1", "--threads", "2", "--steps", "8000"]
@@ -40,18 +42,22 @@ def answer(name, words):
     return measured.answer(kept, [*words, "--json", *out])
 
 
+def deep(level):
+    """Contacts in a million that overlap by more than 3 %"""
+    share = level["deep_contact_share"]
+    return "< 1" if 0 < share < 1e-6 else f"{1e6 * share:.0f}"
+
+
 def tradeoff_table(name, words):
     a = answer(name, words)
     rows = [f"`{shown(words)}` ({a['seeds']} beds a level, {a['provenance']['host']['threads']} threads, {a['provenance']['host']['isa']}):\n",
-            "| level | grains | steps | awake grain-steps | seconds | speed-up | GI rms to the finest | noise floor | packing | largest overlap / r | |", "|---|---|---|---|---|---|---|---|---|---|---|"]
+            "| level | grains | steps | awake grain-steps | seconds | speed-up | GI rms to the finest | noise floor | packing | largest overlap / r | deep | |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for l in a["levels"]:
         if l["grains"] is None:
-            rows.append(f"| {l['name']} | | | | | | | | | | {l['status']}: {l['reason']} |")
+            rows.append(f"| {l['name']} | | | | | | | | | | | {l['status']}: {l['reason']} |")
             continue
         word = "recommended" if l["name"] == a["recommended"] else "" if l["name"] == "finest" else "beyond the noise" if not l["within_noise"] else "overlaps too large" if not l["overlap_rule_kept"] else "free"
-        rows.append(f"| {l['name']} | {l['grains']:.0f} | {l['steps']:.0f} | {l['grain_steps']:.2e} | {l['seconds']:.0f} | {l['speed_up']:.2f} | {l['gi_rmse']:.3f} | {l['noise_floor']:.3f} | {100 * l['packing_error']:+.1f} % | {100 * l['max_overlap_ratio']:.1f} % | {word} |")
-    if name == "reduced":
-        return "\n".join(rows)
+        rows.append(f"| {l['name']} | {l['grains']:.0f} | {l['steps']:.0f} | {l['grain_steps']:.2e} | {l['seconds']:.0f} | {l['speed_up']:.2f} | {l['gi_rmse']:.3f} | {l['noise_floor']:.3f} | {100 * l['packing_error']:+.1f} % | {100 * l['max_overlap_ratio']:.1f} % | {deep(l)} | {word} |")
     rows.append("\nWhat the levels are: " + "; ".join(f"*{l['name']}*: {l['meaning']}" for l in a["levels"]) + ".")
     if a["recommended"]:
         rows.append(f"\nRecommended: **{a['recommended']}**, {a['why']}.")
@@ -59,14 +65,17 @@ def tradeoff_table(name, words):
 
 
 def shipped_table():
-    """Other targets on the first example's rig: the same spreads, from the cache once `ladder` has run."""
-    rows = ["| example | level | seconds | speed-up | GI rms to the finest | noise floor | within two | largest overlap / r |", "|---|---|---|---|---|---|---|---|"]
-    for name in SHIPPED:
-        a = answer(f"ladder-{name}", ["tradeoff", f"examples/{name}.toml"])
+    """On the first example's rig the same spreads read for other targets, from the cache once `ladder` has run; then the rest."""
+    rows = ["| example | level | seconds | speed-up | GI rms to the finest | noise floor | within two | largest overlap / r | deep |", "|---|---|---|---|---|---|---|---|---|"]
+    runs = [(name, f"ladder-{name}", []) for name in SAME_RIG] + [(name, f"study-{name}", words) for name, words in sorted(OTHERS.items())]
+    for name, kept, words in runs:
+        a = answer(kept, ["tradeoff", f"examples/{name}.toml", *words])
+        where = ", half the length" if HALF[-1] in words else f", {a['seeds']} beds" if a["seeds"] != 3 else ""
         for l in a["levels"]:
-            if l["name"] in ("study", a["recommended"]):
-                word = " (recommended)" if l["name"] == a["recommended"] else ""
-                rows.append(f"| {name} | {l['name']}{word} | {l['seconds']:.0f} | {l['speed_up']:.2f} | {l['gi_rmse']:.4f} | {l['noise_floor']:.4f} | {'yes' if l['within_noise'] else 'no'} | {100 * l['max_overlap_ratio']:.1f} % |")
+            if l["name"] != "study" and (l["name"] != a["recommended"] or name not in SAME_RIG):
+                continue
+            word = " (recommended)" if l["name"] == a["recommended"] and name in SAME_RIG else ""
+            rows.append(f"| {name}{where} | {l['name']}{word} | {l['seconds']:.0f} | {l['speed_up']:.2f} | {l['gi_rmse']:.4f} | {l['noise_floor']:.4f} | {'yes' if l['within_noise'] else 'no'} | {100 * l['max_overlap_ratio']:.1f} % | {deep(l)} |")
     return "\n".join(rows)
 
 
@@ -106,18 +115,18 @@ def lammps_table():
 def keep_levels():
     """What the two tables say of each set of reductions, for the reports of designs that use it: linked into the program."""
     of_setting = ("names", "softening", "rayleigh_fraction", "coarse_factor", "sleep")
-    of_level = ("name", "meaning", "status", "reason", "grains", "steps", "seconds", "speed_up", "gi_rmse", "noise_floor", "packing_error", "max_overlap_ratio", "within_noise", "overlap_rule_kept")
+    of_level = ("name", "meaning", "status", "reason", "grains", "steps", "seconds", "speed_up", "gi_rmse", "noise_floor", "packing_error", "max_overlap_ratio", "deep_contact_share", "within_noise", "overlap_rule_kept")
     tables = []
-    for name, words in (("tradeoff", TRADEOFF), ("reduced", REDUCED), ("ladder", LADDER)):
+    for name, words in (("around", AROUND), ("ladder", LADDER)):
         a = answer(name, words)
         levels = [{**{k: l[k] for k in of_level}, "reductions": {k: l["reductions"][k] for k in of_setting}} for l in a["levels"] if l["grains"] is not None]
-        tables.append({"command": shown(words), "study": a["study"] + ("" if name == "ladder" else " at half its length"), "seeds": a["seeds"], "noise_allowed": a["noise_allowed"], "isa": a["provenance"]["host"]["isa"], "levels": levels})
+        tables.append({"command": shown(words), "study": a["study"], "seeds": a["seeds"], "noise_allowed": a["noise_allowed"], "isa": a["provenance"]["host"]["isa"], "levels": levels})
     with open(os.path.join(measured.DOCS, "data", "speed-against-error.json"), "w") as file:
         json.dump(tables, file, indent=1, sort_keys=True)
         file.write("\n")
 
 
-TABLES = {"lammps": lammps_table, "ladder": lambda: tradeoff_table("ladder", LADDER), "shipped": shipped_table, "tradeoff": lambda: tradeoff_table("tradeoff", TRADEOFF), "reduced": lambda: tradeoff_table("reduced", REDUCED), "threads": lambda: two_threads_table("threads", THREADS), "heap": lambda: two_threads_table("heap", HEAP), "sizes": sizes_table}
+TABLES = {"lammps": lammps_table, "ladder": lambda: tradeoff_table("ladder", LADDER), "around": lambda: tradeoff_table("around", AROUND), "shipped": shipped_table, "threads": lambda: two_threads_table("threads", THREADS), "heap": lambda: two_threads_table("heap", HEAP), "sizes": sizes_table}
 measured.fill(PAGE, TABLES)
-if {"ladder", "tradeoff", "reduced"} & set(sys.argv[1:] or TABLES):
+if {"ladder", "around"} & set(sys.argv[1:] or TABLES):
     keep_levels()

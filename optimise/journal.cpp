@@ -215,8 +215,11 @@ json to_json(const Evaluation& evaluation, const std::vector<Layer>& layers) {
     return out;
 }
 
-void from_json(const json& in, JournalEntry& entry) {
-    if (in.at("format").get<int>() != kFormat)
+void from_json(json in, JournalEntry& entry) {
+    const int format = in.at("format").get<int>();
+    if (format == 3)  // nobody had counted them yet
+        in.at("health")["deep_contact_share"] = nullptr;
+    else if (format != kFormat)
         throw std::runtime_error("written by another version of the journal");
     Evaluation& evaluation = entry.evaluation;
     evaluation_fields(Reader{in}, evaluation);

@@ -104,7 +104,7 @@ SpreadResult run_lammps_stage(const Scene& scene, const Stage& stage, const Spre
     }
     const LammpsProgram program = find_lammps(lammps.ranks);
     out.health.status = "ok";
-    out.health.max_overlap_ratio = out.health.deep_contact_share = std::numeric_limits<double>::quiet_NaN();
+    out.health.max_overlap_ratio = std::numeric_limits<double>::quiet_NaN();
     out.bed = stage.bed.facts;
     const double dt = scene_time_step(scene);
     out.grains = static_cast<long>(stage.bed.x.size());

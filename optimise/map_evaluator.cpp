@@ -200,7 +200,7 @@ void MapEvaluator::fill(OriginMap& map, const Design& design, std::uint64_t seed
         map.health.max_overlap_ratio =
             std::max(map.health.max_overlap_ratio, result.health.max_overlap_ratio);
         map.health.deep_contact_share =
-            std::max(map.health.deep_contact_share, result.health.deep_contact_share);
+            std::fmax(map.health.deep_contact_share, result.health.deep_contact_share);
         for (const std::string& warning : result.health.warnings) map.health.warnings.push_back(warning);
         // What never began (stopped, impossible scene) has cost no spread.
         if (result.health.status != "interrupted" && result.health.status != "invalid") ++runner_.map_spreads;

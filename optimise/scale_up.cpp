@@ -80,7 +80,7 @@ ScaledHeap scale_up(const Study& study, const Design& design, SpreadRunner& runn
         heap.health.max_overlap_ratio =
             std::max(heap.health.max_overlap_ratio, result.health.max_overlap_ratio);
         heap.health.deep_contact_share =
-            std::max(heap.health.deep_contact_share, result.health.deep_contact_share);
+            std::fmax(heap.health.deep_contact_share, result.health.deep_contact_share);
         for (const std::string& warning : result.health.warnings) heap.health.warnings.push_back(warning);
         if (result.health.status != "interrupted" && result.health.status != "invalid") ++runner.map_spreads;
         std::string reason = result.health.reason;

@@ -116,7 +116,7 @@ inline constexpr std::array<const char*, 6> kReductions = {
 };
 
 /// reductions = "reduced": chosen from the rows of docs/speed-against-error.md, where the set stands as a
-/// whole too: GI at the edge of the noise, largest overlap beyond the rule.
+/// whole too.
 inline constexpr std::array<const char*, 4> kReduced = {"fines_cut", "shallow_bed", "strip_map",
                                                         "early_stop"};
 inline constexpr double kReducedRayleighFraction = 0.3;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/contact_law.h"
 #include "optimise/study_file.h"
 
 namespace gradwright {
@@ -309,8 +310,7 @@ void compare_levels(Tradeoff& t) {
         if (!std::isfinite(level.gi_rmse) || !std::isfinite(level.noise_floor)) level.gi_error = kNan;
         level.within_noise = level.gi_rmse <= kTradeoffNoise * level.noise_floor;
         level.overlap_rule_kept =
-            level.max_overlap_ratio <= std::max(kOverlapRule, 1.1 * finest.max_overlap_ratio) ||
-            level.deep_contact_share <= kSingleContacts;
+            level.deep_contact_share <= std::max(kDeepContacts, 1.1 * finest.deep_contact_share);
     }
     const auto study = std::find_if(t.levels.begin(), t.levels.end(),
                                     [](const TradeoffLevel& level) { return level.name == "study"; });
@@ -326,9 +326,9 @@ void compare_levels(Tradeoff& t) {
     t.why = fmt::format(
         "the largest speed-up ({:.1f}) among the levels whose GI is within {} noise floors of the finest's "
         "({:.3f} "
-        "against a floor of {:.3f}) and whose grains overlap by no more than 3 % of a radius, or than at the "
-        "finest, but for one contact in {:.0f}",
-        best->speed_up, kTradeoffNoise, best->gi_rmse, best->noise_floor, 1 / kSingleContacts);
+        "against a floor of {:.3f}) and of whose contacts at most one in {:.0f} overlaps by more than 3 % of "
+        "a radius, or no more than of the finest's",
+        best->speed_up, kTradeoffNoise, best->gi_rmse, best->noise_floor, 1 / kDeepContacts);
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "dem/bench.h"
+#include "dem/contact_law.h"
 #include "reports/html_report.h"
 #include "reports/json_support.h"
 #include "reports/provenance.h"
@@ -109,6 +110,7 @@ nlohmann::json tradeoff_json(const Study& study, const Tradeoff& t) {
         {"levels", levels},
         {"noise_rms", number(t.noise_rms)},
         {"noise_allowed", kTradeoffNoise},
+        {"deep_contacts_allowed", kDeepContacts},
         {"recommended", t.recommended},
         {"why", t.why},
         {"profile", {{"y_m", numbers(t.y_m)}, {"weight", numbers(t.weight)}, {"target", numbers(t.target)}}},
@@ -139,11 +141,10 @@ std::string tradeoff_text(const Study& study, const Tradeoff& t) {
     }
     out += fmt::format(
         "\nGI rms: difference of the mean GI(y) to the finest level's. Floor: what the beds alone would "
-        "give; a level "
-        "is free\nup to {} floors. Packing: against the finest; overlap: largest, of a radius; deep: "
-        "contacts in a "
-        "million\nthat overlap by more than 3 %, {:.0f} at most or the largest overlap must keep to it.\n",
-        kTradeoffNoise, 1e6 * kSingleContacts);
+        "give. Packing: against\nthe finest; overlap: largest, of a radius; deep: contacts in a million that "
+        "overlap by more than 3 %. A level is free\nup to {} floors and {:.0f} deep contacts in a million, "
+        "or as many as the finest has.\n",
+        kTradeoffNoise, 1e6 * kDeepContacts);
     if (t.recommended.empty())
         out += "Nothing can be recommended: no level has two beds, or none is within the noise.\n";
     else

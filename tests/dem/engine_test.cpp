@@ -494,10 +494,25 @@ TEST_P(EngineOf, deep_contacts_are_a_share_of_those_seen) {
     e.advance(1);
     EXPECT_NEAR(e.max_overlap_ratio_seen(), 0.12, 1e-6);
     EXPECT_DOUBLE_EQ(e.deep_contact_share(), 3.0 / 4);
+    // a new grain, and so a second look at the same contacts
+    e.add_grain({.x = -10 * kRadius, .z = 5 * kRadius, .radius = kRadius});
+    e.advance(1);
+    EXPECT_DOUBLE_EQ(e.deep_contact_share(), 6.0 / 8);
     Engine again(bare(GetParam()));
     again.add_body(plane_z());
     again.restore(e.save());
-    EXPECT_DOUBLE_EQ(again.deep_contact_share(), 3.0 / 4);
+    EXPECT_DOUBLE_EQ(again.deep_contact_share(), 6.0 / 8);
+}
+
+TEST_P(EngineOf, a_face_that_yields_makes_no_deep_contacts) {
+    Engine e(bare(GetParam()));
+    Body floor = plane_z();
+    floor.yield_ratio = 0.006;
+    e.add_body(floor);
+    e.add_grain({.z = 0.9 * kRadius, .radius = kRadius, .material = 3});
+    e.advance(1);
+    EXPECT_EQ(e.deep_contact_share(), 0);
+    EXPECT_EQ(e.max_overlap_ratio_seen(), 0);
 }
 
 TEST(Failure, grains_at_one_place_are_a_failed_run_and_not_a_silent_one) {

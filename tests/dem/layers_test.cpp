@@ -362,6 +362,8 @@ TEST_F(Layers, a_spread_of_several_is_kept_whole_and_one_of_one_layer_as_before)
     ASSERT_TRUE(read_spread(bytes, read));
     EXPECT_EQ(read.earlier.at(0).origin_x, two.earlier.at(0).origin_x);
     EXPECT_EQ(read.passes.at(1).raised_solid_volume, two.passes.at(1).raised_solid_volume);
+    EXPECT_TRUE(std::isfinite(two.health.deep_contact_share));
+    EXPECT_EQ(read.health.deep_contact_share, two.health.deep_contact_share);
     EXPECT_EQ(spread_bytes(read), bytes);
     SpreadResult cut;
     EXPECT_FALSE(read_spread(bytes.substr(0, bytes.size() - 1), cut));

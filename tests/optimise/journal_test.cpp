@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 namespace gradwright {
 namespace {
@@ -35,6 +36,8 @@ Evaluation example() {
     e.fidelity = Fidelity::full;
     e.health.status = "ok";
     e.health.warnings = {"gap below d_max"};
+    e.health.max_overlap_ratio = 0.025;
+    e.health.deep_contact_share = 1.0 / 3;
     e.seed = 9007199254740991ULL;
     e.profile.y_m = {1e-4, 3e-4};
     e.profile.gi = {0.1, std::nan("")};
@@ -77,10 +80,25 @@ TEST_F(JournalTest, what_is_written_is_read_back_bit_for_bit_and_undefined_bins_
     EXPECT_EQ(got.objective, expected.objective);
     EXPECT_EQ(got.residuals, expected.residuals);
     EXPECT_EQ(got.health.warnings, expected.health.warnings);
+    EXPECT_EQ(got.health.max_overlap_ratio, expected.health.max_overlap_ratio);
+    EXPECT_EQ(got.health.deep_contact_share, expected.health.deep_contact_share);
     ASSERT_EQ(entries[0].layers.size(), 1u);
     EXPECT_EQ(entries[0].layers[0].origin_x, layer.origin_x);
     EXPECT_EQ(entries[0].layers[0].is_a, layer.is_a);
     EXPECT_EQ(entries[0].layers[0].packing_seed, 77u);
+}
+
+TEST_F(JournalTest, an_entry_from_before_deep_contacts_were_counted_is_read_without_them) {
+    Journal(folder_).append(example());
+    const std::string file = folder_ + "/000001_full.json";
+    nlohmann::json entry = nlohmann::json::parse(std::ifstream(file));
+    entry["format"] = 3;
+    entry["health"].erase("deep_contact_share");
+    std::ofstream(file) << entry;
+    const auto entries = Journal::read(folder_);
+    ASSERT_EQ(entries.size(), 1u);
+    EXPECT_TRUE(std::isnan(entries[0].evaluation.health.deep_contact_share));
+    EXPECT_EQ(entries[0].evaluation.health.max_overlap_ratio, 0.025);
 }
 
 TEST_F(JournalTest, numbers_go_on_after_a_restart_and_name_the_fidelity) {

@@ -55,6 +55,7 @@ inline SpreadResult spread(const Heap& heap, Calls& calls, const Scene& scene,
     (labelled ? calls.full_widths : calls.map_widths).push_back(scene.width);
     SpreadResult result;
     result.health.status = "ok";
+    result.health.deep_contact_share = 0;
     if ((labelled && int(calls.full_seeds.size()) <= heap.fail_full) || (!labelled && heap.fail_map)) {
         result.health.status = "jammed";
         result.health.reason = "a grain sits in the nip";

@@ -261,6 +261,7 @@ Tradeoff by_hand() {
         run.seconds = seconds;
         run.packing_fraction = 0.3;
         run.health.max_overlap_ratio = 0.02;
+        run.health.deep_contact_share = 0;
         return run;
     };
     t.levels[0].name = "finest";
@@ -293,17 +294,31 @@ TEST(Tradeoff, grains_that_overlap_too_much_are_not_recommended_however_fast) {
     for (TradeoffRun& run : t.levels[1].runs) run.gi = t.levels[0].runs[0].gi;
     compare_levels(t);
     EXPECT_EQ(t.recommended, "study");
-    t.levels[1].runs[0].health.max_overlap_ratio = 0.04;
-    t.levels[1].runs[0].health.deep_contact_share = 5e-4;
-    t.levels[1].runs[1].health.deep_contact_share = 1e-4;
+    t.levels[1].runs[0].health.max_overlap_ratio = 0.12;
+    t.levels[1].runs[0].health.deep_contact_share = 5e-3;
+    t.levels[1].runs[1].health.deep_contact_share = 1e-3;
     compare_levels(t);
-    EXPECT_NEAR(t.levels[1].deep_contact_share, 3e-4, 1e-15);
+    EXPECT_NEAR(t.levels[1].deep_contact_share, 3e-3, 1e-15);
     EXPECT_TRUE(t.levels[1].within_noise);
     EXPECT_EQ(t.recommended, "finest");
-    // the same largest overlap, but of a single grain
-    for (TradeoffRun& run : t.levels[1].runs) run.health.deep_contact_share = 2e-5;
+    // as deep, but a single grain of one bed
+    t.levels[1].runs[0].health.deep_contact_share = 5e-4;
+    t.levels[1].runs[1].health.deep_contact_share = 0;
     compare_levels(t);
     EXPECT_EQ(t.recommended, "study");
+    // one in a thousand is the limit, and it is kept
+    for (TradeoffRun& run : t.levels[1].runs) run.health.deep_contact_share = 1e-3;
+    compare_levels(t);
+    EXPECT_EQ(t.recommended, "study");
+    // a grain wedged at the finest level excuses nobody
+    t.levels[0].runs[0].health.max_overlap_ratio = 0.2;
+    for (TradeoffRun& run : t.levels[1].runs) run.health.deep_contact_share = 2e-3;
+    compare_levels(t);
+    EXPECT_EQ(t.recommended, "finest");
+    // unknown is not kept
+    t.levels[1].runs[0].health.deep_contact_share = std::nan("");
+    compare_levels(t);
+    EXPECT_EQ(t.recommended, "finest");
 }
 
 }  // namespace
