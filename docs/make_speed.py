@@ -27,7 +27,7 @@ SAME_RIG = ["02_sigmoid_coupon", "08_a_b_a", "09_table", "10_premixed_sigmoid"]
 # Other powders, another motion, a field: the set as a whole, on the rig at half its length
 HALF = ["--level", "study", "--set", 'machine.dispenser.length="1.6 mm"', "--set", 'machine.platform.length="1.6 mm"', "--set", 'machine.land="1.6 mm"',
         "--set", 'target.footprint.x=["0.8 mm", "1.6 mm"]']
-OTHERS = {"04_unlike_alloys": HALF, "06_316l_cucrzr": HALF, "07_two_sizes": HALF,
+OTHERS = {"03_paper_five_degrees": ["--level", "study", "--seeds", "2", *HALF[2:6]], "04_unlike_alloys": HALF, "06_316l_cucrzr": HALF, "07_two_sizes": HALF,
           "11_joint_search": [*HALF, "--set", 'design_space.footprint_offset=["-0.4 mm", "0 mm"]'],
           "12_three_layers": ["--level", "study", "--seeds", "2"], "13_field": HALF}
 THREADS = ["bench", "--grains", "17000", "--threads", "1", "--threads", "2", "--state", "settled", "--state", "flowing", "--steps", "2000"]
@@ -70,7 +70,7 @@ def shipped_table():
     runs = [(name, f"ladder-{name}", []) for name in SAME_RIG] + [(name, f"study-{name}", words) for name, words in sorted(OTHERS.items())]
     for name, kept, words in runs:
         a = answer(kept, ["tradeoff", f"examples/{name}.toml", *words])
-        where = ", half the length" if HALF[-1] in words else f", {a['seeds']} beds" if a["seeds"] != 3 else ""
+        where = (", half the length" if HALF[3] in words else "") + (f", {a['seeds']} beds" if a["seeds"] != 3 else "")
         for l in a["levels"]:
             if l["name"] != "study" and (l["name"] != a["recommended"] or name not in SAME_RIG):
                 continue
