@@ -315,8 +315,16 @@ TEST(Tradeoff, grains_that_overlap_too_much_are_not_recommended_however_fast) {
     for (TradeoffRun& run : t.levels[1].runs) run.health.deep_contact_share = 2e-3;
     compare_levels(t);
     EXPECT_EQ(t.recommended, "finest");
-    // unknown is not kept
+    // ... but a tenth more than the finest has is allowed
+    for (TradeoffRun& run : t.levels[0].runs) run.health.deep_contact_share = 1.9e-3;
+    compare_levels(t);
+    EXPECT_EQ(t.recommended, "study");
+    for (TradeoffRun& run : t.levels[0].runs) run.health.deep_contact_share = 1.7e-3;
+    compare_levels(t);
+    EXPECT_EQ(t.recommended, "finest");
+    // unknown is not kept, however few the other bed has
     t.levels[1].runs[0].health.deep_contact_share = std::nan("");
+    t.levels[1].runs[1].health.deep_contact_share = 0;
     compare_levels(t);
     EXPECT_EQ(t.recommended, "finest");
 }
